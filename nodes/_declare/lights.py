@@ -98,6 +98,24 @@ class Light(Struct, frozen=True):
     roll: Annotated[
         float, Slider(-180.0, 180.0, unit="deg", doc="Turns it around its direction. At 0 its width is level.")
     ] = 0.0
+    angle: Annotated[
+        float,
+        Slider(0.0, 20.0, unit="deg", minimum=0.0, maximum=90.0, doc="How large it looks: softens its shadows."),
+    ] = 0.5
+    shadow: Annotated[bool, Doc("Casts shadows of what the picture shows, which are soft if the light has a size.")] = (
+        False
+    )
+    matte: Annotated[
+        int,
+        Slider(
+            -4,
+            4,
+            unit="count",
+            minimum=-4,
+            maximum=4,
+            doc="Lights only what is in this matte, 1 to 4; below 0 only what is outside of it. 0: everything.",
+        ),
+    ] = 0
 
     @property
     def gain(self) -> float:
@@ -140,7 +158,8 @@ _THINNEST = 1e-4
 
 _ORDER = (
     "on", "solo", "color", "temperature", "intensity", "exposure",
-    "place", "direction", "roll", "width", "height", "length", "size", "inner", "outer", "reach",
+    "place", "direction", "roll", "width", "height", "length", "size", "inner", "outer", "angle", "reach", "shadow",
+    "matte",
 )  # fmt: skip
 """The fields in the order of the editor."""
 
@@ -148,13 +167,13 @@ _LOCAL = ("place", "reach")
 _FIELDS: Mapping[LightKind, tuple[str, ...]] = {
     LightKind.POINT: _LOCAL,
     LightKind.SPOT: (*_LOCAL, "direction", "inner", "outer"),
-    LightKind.SUN: ("direction",),
+    LightKind.SUN: ("direction", "angle"),
     LightKind.SPHERE: (*_LOCAL, "size"),
     LightKind.RECTANGLE: (*_LOCAL, "direction", "roll", "width", "height"),
     LightKind.DISC: (*_LOCAL, "direction", "size"),
     LightKind.TUBE: (*_LOCAL, "direction", "length", "size"),
 }
-_SHARED = ("color", "temperature", "intensity", "exposure", "on", "solo")
+_SHARED = ("color", "temperature", "intensity", "exposure", "on", "solo", "shadow", "matte")
 _DOCS = {
     LightKind.POINT: "Shines from one point in all directions.",
     LightKind.SPOT: "Shines from one point in a cone.",

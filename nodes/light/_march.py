@@ -2,12 +2,12 @@
 
 import math
 
-from .._declare import Draw, Drawn, Field, Vector
+from .._declare import Draw, Drawn, Pixels, Vector
 
 _LEVELS = 3
 
 
-def surfaces(draw: Draw, depth: Field, owner: str, solid: tuple[float, ...] | None = None) -> Drawn:
+def surfaces(draw: Draw, depth: Pixels, owner: str, solid: tuple[float, ...] | None = None) -> Drawn:
     """Every pixel as a small plane, and below them what cells of 4, 16 and 64 pixels hold.
 
     The owner's GLSL file has a function for each of the three draws, which calls the one of march.glsl. With `solid`,

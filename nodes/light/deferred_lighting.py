@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal
 from .._declare import (
     MAX_LIGHTS,
     RGBA,
+    CameraModel,
     CameraSocket,
     Doc,
     Draw,
@@ -17,6 +18,7 @@ from .._declare import (
     LightKind,
     LightSet,
     OutputSocket,
+    Pixels,
     Slider,
     Stops,
     Trait,
@@ -28,6 +30,7 @@ from .._declare import (
 from ._area_lights import AREA_KINDS, COSINE_CELLS, pack_area_light, read_cosines
 from ._blackbody import blackbody_rec709
 from ._coverage import COVERAGE_REACH
+from ._light_masks import BATCH, draw_masks, is_limited
 
 TILE = 16
 """Pixels across a tile."""
@@ -50,32 +53,12 @@ _RIG = name_lights(
 """A warm key from the left, a cool spot from the right, a rim from behind and moonlight."""
 
 _NEON = (
-    0.0,
-    1.0,
-    0.1,
-    0.35,
-    1.0,
-    0.25,
-    1.0,
-    0.4,
-    0.08,
-    1.0,
-    0.5,
-    0.1,
-    0.9,
-    0.8,
-    1.0,
-    0.75,
-    0.12,
-    0.35,
-    1.0,
-    1.0,
-    1.0,
-    0.65,
-    0.12,
-    1.0,
-    1.0,
-)
+    0.0, 1.0, 0.1, 0.35, 1.0,
+    0.25, 1.0, 0.4, 0.08, 1.0,
+    0.5, 0.1, 0.9, 0.8, 1.0,
+    0.75, 0.12, 0.35, 1.0, 1.0,
+    1.0, 0.65, 0.12, 1.0, 1.0,
+)  # fmt: skip
 """Pink, orange, teal, blue, violet."""
 
 _Place = tuple[float, float, float]
@@ -90,7 +73,11 @@ class DeferredLighting(Filter):
     2013). Rectangles, discs and tubes light by linearly transformed cosines (Heitz et al. 2016), always those of GGX.
     Light falls off with the square of the distance, times (1 - (d / reach)^4)^2 if a reach is given: with many lights,
     those with a reach are fast. A light can have a color temperature instead of a color. A swarm adds many small lights
-    at once. Nothing casts shadows. `out` is diffuse and specular light and emission.
+    at once.
+
+    A light with `shadow` casts shadows of what the picture shows, by rays through the depth (McGuire and Mara 2014),
+    soft for a light with a size. A light with a `matte` lights only what is in one of the four mattes. `out` is diffuse
+    and specular light and emission.
     """
 
     aliases = (
@@ -108,6 +95,10 @@ class DeferredLighting(Filter):
     material = Vector((0.0, 0.0), width=2, doc="Metal and roughness, 0..1, in place of the two values.")
     emission = Image((0.0, 0.0, 0.0, 0.0), doc="Added as it is.")
     occlusion = Field(1.0, doc="Ambient occlusion, 0..1: only the ambient light is multiplied with it.")
+    matte_1 = Field(1.0, folded=True, doc="A matte that lights can be limited to, of a cryptomatte, an id or any mask.")
+    matte_2 = Field(1.0, folded=True, doc="Another matte.")
+    matte_3 = Field(1.0, folded=True, doc="Another matte.")
+    matte_4 = Field(1.0, folded=True, doc="Another matte.")
     model: Annotated[Literal["ggx", "phong"], Doc("The shape of highlights.")] = "ggx"
     roughness: Annotated[Fraction, Doc("How wide highlights are: 0 polished, 1 dull.")] = 0.4
     metal: Annotated[Fraction, Doc("1 reflects in the color of the albedo, without diffuse light.")] = 0.0
@@ -118,6 +109,21 @@ class DeferredLighting(Filter):
     intensity: Annotated[float, Slider(0.0, 4.0, unit="ratio", doc="Scales all lights, those of the swarm too.")] = 1.0
     ambient: Annotated[RGBA, Doc("Light from everywhere; its alpha scales it.")] = (0.35, 0.5, 0.8, 1.0)
     ambient_intensity: Annotated[float, Slider(0.0, 2.0, unit="ratio", doc="How strong it is.")] = 0.06
+    shadow_length: Annotated[
+        float,
+        Slider(0.01, 20.0, unit="scene", minimum=1e-5, maximum=1e8, doc="How far away a shadow caster may be."),
+    ] = 5.0
+    shadow_thickness: Annotated[
+        float,
+        Slider(
+            0.01,
+            5.0,
+            unit="scene",
+            minimum=0.0,
+            maximum=1e8,
+            doc="The least thickness of shadow casters, which count as deep as they are wide.",
+        ),
+    ] = 0.3
     swarm: Annotated[
         int, Slider(0, 128, unit="count", minimum=0, maximum=MAX_LIGHTS, doc="The number of point lights in the swarm.")
     ] = 0
@@ -169,16 +175,18 @@ class DeferredLighting(Filter):
             result=Vector(width=3),
         )
         shining = self._list_lights()
-        lights = [light for light in shining if light.kind not in AREA_KINDS]
-        areas = [light for light in shining if light.kind in AREA_KINDS]
+        unlimited = [light for light in shining if not is_limited(light)]
+        lights = [light for light in unlimited if light.kind not in AREA_KINDS]
+        areas = [light for light in unlimited if light.kind in AREA_KINDS]
         texels = max(1, -(-len(lights) // (4 * _BITS)))
         tiled = len(lights) > FEW and any(_ball(light)[3] < math.inf for light in lights)
         words = self._tiles(draw, place, lights, texels) if tiled else draw.table(_all(len(lights), texels), texels)
-        table = self._tabulate(draw, lights, [_pack_light(light, self.intensity) for light in lights])
+        table = self._tabulate(draw, lights)
         ambient_gain = 0.0 if any(light.solo for light in shining) else self.ambient_intensity
         ambient = tuple(ambient_gain * self.ambient[3] * part for part in self.ambient[:3])
+        limited = self._limit_lights(draw, shining, normal, place, camera)
 
-        ways = {"normal": normal, "place": place, "near": near, "coverage": coverage}
+        surface: dict[str, Any] = {"normal": normal, "place": place, "near": near, "coverage": coverage}
         material: dict[str, Any] = {
             "mapped": draw.is_linked(self.material),
             "metal": self.metal,
@@ -193,7 +201,7 @@ class DeferredLighting(Filter):
                 self.albedo,
                 self.material,
                 self.occlusion,
-                **ways,
+                **surface,
                 lights=table,
                 words=words,
                 overlap=_HERE,
@@ -205,22 +213,26 @@ class DeferredLighting(Filter):
                 ambient=ambient,
                 **view,
             )
-            if not areas:
-                return light
-            return draw(
-                "deferred_lighting_areas",
-                self.albedo,
-                self.material,
-                **ways,
-                lit=light,
-                areas=self._tabulate(draw, areas, [pack_area_light(light, self.intensity) for light in areas]),
-                cosines=draw.table(read_cosines(), COSINE_CELLS),
-                overlap=_HERE | {"lit": 0},
-                count=len(areas),
-                share=(scattered, mirrored),
-                **material,
-                **view,
-            )
+            if areas:
+                light = draw(
+                    "deferred_lighting_areas",
+                    self.albedo,
+                    self.material,
+                    **surface,
+                    lit=light,
+                    areas=self._tabulate(draw, areas),
+                    cosines=draw.table(read_cosines(), COSINE_CELLS),
+                    overlap=_HERE | {"lit": 0},
+                    count=len(areas),
+                    share=(scattered, mirrored),
+                    **material,
+                    **view,
+                )
+            for batch, mask in limited:
+                light = self._add_limited(
+                    draw, light, batch, mask, surface, {"share": (scattered, mirrored), **material, **view}
+                )
+            return light
 
         return {
             "out": draw.point("deferred_lighting", lit=lit(1.0, 1.0), emission=self.emission),
@@ -228,11 +240,60 @@ class DeferredLighting(Filter):
             "specular_light": lit(0.0, 1.0),
         }
 
-    def _tabulate(self, draw: Draw, lights: list[Light], rows: list[tuple[float, ...]]) -> Drawn:
-        """Rows of numbers for GLSL, one for each light; the second texel of a row is a color.
+    def _limit_lights(
+        self, draw: Draw, shining: list[Light], normal: Pixels, place: Drawn, camera: CameraModel | None
+    ) -> list[tuple[list[Light], Drawn]]:
+        """Lights with shadows or mattes, a few at a time, those of an area last, and the masks of each few."""
+        lights = sorted((light for light in shining if is_limited(light)), key=lambda light: light.kind in AREA_KINDS)
+        if not lights:
+            return []
+        depth: Pixels = self.depth
+        if camera is not None and draw.is_linked(self.position):
+            depth = draw.point("deferred_lighting_depth", place=place, result=Field(), rows=camera.rows)
+        mattes = (self.matte_1, self.matte_2, self.matte_3, self.matte_4)
+        pictures = {"normal": normal, "depth": depth}
+        batches = [lights[first : first + BATCH] for first in range(0, len(lights), BATCH)]
+        return [
+            (batch, draw_masks(draw, batch, pictures, camera, mattes, self.shadow_length, self.shadow_thickness))
+            for batch in batches
+        ]
+
+    def _add_limited(
+        self,
+        draw: Draw,
+        light: Drawn,
+        batch: list[Light],
+        mask: Drawn,
+        surface: Mapping[str, Any],
+        numbers: Mapping[str, Any],
+    ) -> Drawn:
+        """A picture of light with that of a few lights more, as far as their masks let it through."""
+        areas = [light for light in batch if light.kind in AREA_KINDS]
+        lamps = batch[: len(batch) - len(areas)]
+        return draw(
+            "deferred_lighting_limited",
+            self.albedo,
+            self.material,
+            **surface,
+            lit=light,
+            mask=mask,
+            lights=self._tabulate(draw, lamps),
+            areas=self._tabulate(draw, areas),
+            cosines=draw.table(read_cosines(), COSINE_CELLS),
+            overlap=_HERE | {"lit": 0, "mask": COVERAGE_REACH},
+            model=self.model,
+            lamps=len(lamps),
+            count=len(areas),
+            **numbers,
+        )
+
+    def _tabulate(self, draw: Draw, lights: list[Light]) -> Drawn:
+        """Rows of numbers for GLSL, one for each light; the second texel of a row is a color. All are areas, or none.
 
         Temperatures become colors in GLSL, as only that knows the working space.
         """
+        pack = pack_area_light if lights and lights[0].kind in AREA_KINDS else _pack_light
+        rows = [pack(light, self.intensity) for light in lights]
         width = len(rows[0]) // 4 if rows else 3
         table = draw.table(tuple(part for row in rows for part in row), width)
         if not any(light.temperature for light in lights):

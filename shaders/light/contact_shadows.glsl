@@ -1,5 +1,4 @@
-#include "lib/march.glsl"
-#include "lib/occlusion.glsl"
+#include "lib/shadow.glsl"
 #include "lib/solid.glsl"
 
 vec4 contact_shadows_planes() { return march_planes(); }
@@ -9,11 +8,6 @@ vec4 contact_shadows_solid(const vec4 rays[3]) { return solid_planes(rays); }
 vec4 contact_shadows_bounds() { return march_bounds(); }
 vec4 contact_shadows_surfaces() { return march_surfaces(); }
 
-vec3 contact_shadows_normal(const vec4 rows[3], ivec2 at) {
-    vec3 normal = normal_at(at);
-    return is_finite(normal) && !is_mixed(normal) ? unit_normal(normal) : march_normal(rows, at, extent);
-}
-
 // The part of a light that a pixel sees. `to` is the direction to a sun, or the position of a lamp; `spread` is its
 // size, as the tangent of its angular radius.
 float contact_shadows_open(
@@ -22,7 +16,7 @@ float contact_shadows_open(
     float near = surfaces_at(pixel).x, open = 0.0;
     if (near <= 0.0) return 1.0;
     vec2 uv = camera_uv(pixel, extent), size = vec2(extent);
-    vec3 normal = contact_shadows_normal(rows, pixel), plane = march_normal(rows, pixel, extent);
+    vec3 normal = shadow_normal(rows, pixel), plane = march_normal(rows, pixel, extent);
     if (light == LIGHT_LAMP) {
         to -= camera_place(rays, uv, 1.0 / near);
         reach = min(reach, length(to));
@@ -36,10 +30,7 @@ float contact_shadows_open(
         vec2 random = fract(noise + float(i) * lattice);
         float turn = 2.0 * OCCLUSION_PI * random.x, away = spread * sqrt(random.y);
         vec3 way = normalize(to + away * (cos(turn) * across + sin(turn) * cross(to, across)));
-        March ray = march_start(rows, uv, 1.0 / near, march_out(way, plane), reach, false, size);
-        // Hits near the far end fade out, so that no shadow ends abruptly.
-        bool met = march(ray, extent, thickness, 512);
-        open += met ? 1.0 - ray.sure * clamp(3.0 - 3.0 * march_distance(ray) / reach, 0.0, 1.0) : 1.0;
+        open += shadow_open(rows, uv, 1.0 / near, way, plane, reach, thickness, size);
     }
     return finite(open / float(count));
 }
@@ -48,16 +39,13 @@ float contact_shadows_open(
 float contact_shadows_denoise(const vec4 rows[3], const vec4 rays[3]) {
     float depth = 1.0 / surfaces_at(pixel).x, sum = 0.0, total = 0.0;
     if (surfaces_at(pixel).x <= 0.0) return 1.0;
-    vec3 normal = contact_shadows_normal(rows, pixel), here = depth * camera_ray(rays, camera_uv(pixel, extent));
+    vec3 normal = shadow_normal(rows, pixel), here = depth * camera_ray(rays, camera_uv(pixel, extent));
     float apart = pixel_pitch(rays, depth, vec2(extent));
     for (int y = -2; y <= 2; ++y)
         for (int x = -2; x <= 2; ++x) {
-            ivec2 at = pixel + ivec2(x, y);
-            if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, extent)) || surfaces_at(at).x <= 0.0) continue;
-            vec3 away = camera_ray(rays, camera_uv(at, extent)) / surfaces_at(at).x - here;
-            float weight = (abs(x) == 2 ? 0.5 : 1.0) * (abs(y) == 2 ? 0.5 : 1.0);
-            weight *= at == pixel ? 1.0 : same_surface(normal, contact_shadows_normal(rows, at), away, apart);
-            sum += weight * open_at(at);
+            float weight = shadow_weight(rows, rays, ivec2(x, y), normal, here, apart);
+            if (weight <= 0.0) continue;
+            sum += weight * open_at(pixel + ivec2(x, y));
             total += weight;
         }
     return finite(sum / total);

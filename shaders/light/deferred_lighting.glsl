@@ -6,6 +6,8 @@
 #include "lib/coverage.glsl"
 #include "lib/finite.glsl"
 #include "lib/geometry.glsl"
+#include "lib/light_shadow.glsl"
+#include "lib/solid.glsl"
 #include "lib/working.glsl"
 
 const int DEFERRED_LIGHTING_TILE = 16;            // pixels along each side
@@ -220,6 +222,68 @@ vec4 deferred_lighting_areas(
         before.rgb += premultiplied(vec4(lit, material.color.a)).rgb;
     }
     return finite(before);
+}
+
+// Adds lights that a mask limits, each by a channel: first `lamps`, then `count` areas.
+vec4 deferred_lighting_limited(
+    int model, int lamps, int count, vec2 share, bool mapped, float metal, float roughness, float specular,
+    const vec4 rays[3], bool seen, vec3 eye
+) {
+    vec4 color = finite(albedo_at(pixel)), before = lit_at(pixel);
+    Coverage shares = coverage_of(coverage_at(pixel));
+    bool mixed = coverage_is_mixed(shares);
+    for (int k = 0; k < (mixed ? 2 : 1); ++k) {
+        LitPart part;
+        if (!deferred_lighting_part(k, mixed, shares, color, rays, seen, part)) continue;
+        LitMaterial material = deferred_lighting_material(part, mapped, metal, roughness, specular, seen, eye);
+        LitSurface surface = material.surface;
+        vec4 mask = mask_at(part.at);
+        vec3 fallen = vec3(0.0), mirrored = vec3(0.0);
+        for (int light = 0; light < lamps; ++light) {
+            vec3 matte = vec3(0.0), shiny = vec3(0.0);
+            deferred_lighting_add(model, light, surface, matte, shiny);
+            fallen += mask[light] * matte / BRDF_PI, mirrored += mask[light] * shiny;
+        }
+        AreaSurface lobes = area_surface(surface.normal, surface.view, surface.nv, sqrt(surface.alpha));
+        for (int light = 0; light < count; ++light) {
+            vec3 matte = vec3(0.0), shiny = vec3(0.0);
+            area_add(area_light(light, surface.place), lobes, surface.f0, matte, shiny);
+            fallen += mask[lamps + light] * matte, mirrored += mask[lamps + light] * shiny;
+        }
+        vec3 lit = share.x * material.scatter * fallen + share.y * mirrored;
+        before.rgb += premultiplied(vec4(lit, material.color.a)).rgb;
+    }
+    return finite(before);
+}
+
+// --- masks of lights -----------------------------------------------------------------------------------------------
+
+vec4 deferred_lighting_planes() { return march_planes(); }
+vec4 deferred_lighting_neighbors(const vec4 rays[3]) { return solid_neighbors(rays); }
+vec4 deferred_lighting_runs(int reach) { return solid_runs(reach); }
+vec4 deferred_lighting_solid(const vec4 rays[3]) { return solid_planes(rays); }
+vec4 deferred_lighting_bounds() { return march_bounds(); }
+vec4 deferred_lighting_surfaces() { return march_surfaces(); }
+
+// The planar depth of a place in the world, 0 on the background.
+float deferred_lighting_depth(vec4 place, const vec4 rows[3]) {
+    return place.w > 0.0 ? max(dot(rows[2], vec4(place.xyz, 1.0)), 0.0) : 0.0;
+}
+
+vec4 deferred_lighting_open(
+    const vec4 rows[3], const vec4 rays[3], int count, float reach, float thickness, int samples
+) {
+    return lamps_open(rows, rays, count, reach, thickness, samples);
+}
+
+vec4 deferred_lighting_smooth(const vec4 rows[3], const vec4 rays[3], vec4 soft) {
+    return lamps_smooth(rows, rays, soft);
+}
+
+vec4 deferred_lighting_limit(
+    float matte_1, float matte_2, float matte_3, float matte_4, vec4 open, vec4 choices
+) {
+    return lamps_limit(open, vec4(matte_1, matte_2, matte_3, matte_4), choices);
 }
 
 vec4 deferred_lighting(vec4 lit, vec4 emission) { return finite(vec4(lit.rgb + finite(emission).rgb, lit.a)); }
