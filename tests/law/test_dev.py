@@ -48,7 +48,7 @@ def dev(checkout: Path, *words: str, commands: dict[str, str]) -> subprocess.Com
 def test_help(checkout: Path, word: str) -> None:
     result = dev(checkout, *filter(None, [word]), commands={})
     assert result.returncode == 0
-    assert all(f"./dev {task}" in result.stdout for task in ("demo", "edit", "test", "renew"))
+    assert all(f"./dev {task}" in result.stdout for task in ("demo", "edit", "test", "renew", "release"))
 
 
 def test_an_unknown_word_is_a_usage_error(checkout: Path) -> None:
@@ -86,7 +86,7 @@ case $1 in
         pip) echo pip "$@" >>log; echo Collecting a; echo ERROR: no network; exit {pip} ;;
         pytest) echo run "$@" >>log; exit 7 ;;
     esac ;;
-    demo | edit | tests/generated_pages.py) echo run "$@" >>log; exit 7 ;;
+    demo | edit | tests/*.py) echo run "$@" >>log; exit 7 ;;
 esac
 """
 
@@ -122,11 +122,26 @@ def test_set_up_happens_once_and_again_when_something_changed(checkout: Path) ->
     assert steps("test") == ["venv", "pip", "run"]
 
 
-def test_renewing_needs_what_tests_need(checkout: Path) -> None:
-    result = dev(checkout, "renew", commands=fake())
+TASKS = {"renew": (".[test]", "tests/generated_pages.py"), "release": (".[release]", "tests/release.py")}
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_a_task_installs_what_it_needs(checkout: Path, task: str) -> None:
+    result = dev(checkout, task, commands=fake())
     assert result.returncode == 7, result.stderr
     venv, pip, run = (checkout / "log").read_text().splitlines()
-    assert (venv, pip.split()[-2:], run.split()) == ("venv", ["-e", ".[test]"], ["run", "tests/generated_pages.py"])
+    extra, script = TASKS[task]
+    assert (venv, pip.split()[-2:], run.split()) == ("venv", ["-e", extra], ["run", script])
+
+
+def test_a_task_keeps_what_another_one_installed(checkout: Path) -> None:
+    extras = []
+    for task in ("demo", "test", "release", "demo", "test", "release"):
+        assert dev(checkout, task, commands=fake()).returncode == 7
+        shutil.rmtree(checkout.parent / "tools")
+        extras += [line.split()[-1] for line in (checkout / "log").read_text().splitlines() if "pip" in line]
+        (checkout / "log").unlink()
+    assert extras == [".", ".[test]", ".[test,release]"]
 
 
 def test_a_moved_checkout_gets_a_new_venv(checkout: Path) -> None:
