@@ -29,7 +29,8 @@ DEVELOPMENT_EXTRAS = frozenset({"docs", "release", "test"})
 """Extras for work on Halation; a full installation has all others."""
 
 _LICENSE_FILE = re.compile(r"(^|/)(licen[cs]es?/|(licen[cs]e|copying|notice|authors)[^/]*$)", re.I)
-_LIBRARY = re.compile(r"\.(so|dylib|dll)(\.|$)", re.I)
+_LIBRARY = re.compile(r"^(?!.*\.(cpython|abi3)).*\.(so|dylib|dll)(\.|$)", re.I)
+"""A library that is no Python module."""
 
 
 def main() -> None:
@@ -42,7 +43,8 @@ def main() -> None:
     folder.mkdir(parents=True)
     with tempfile.TemporaryDirectory() as name:
         work = Path(name)
-        builds = [build_packages(export_commit(work / f"tree{turn}"), work / f"build{turn}", commit_time) for turn in "ab"]
+        trees = [export_commit(work / f"tree{turn}") for turn in (1, 2)]
+        builds = [build_packages(tree, work / f"build{turn}", commit_time) for turn, tree in enumerate(trees)]
         for first, second in zip(*builds, strict=True):
             if first.read_bytes() != second.read_bytes():
                 sys.exit(f"release: two builds of {first.name} differ; this is a fault of tests/release.py")
@@ -131,7 +133,7 @@ def write_notice(packages: Iterable[Distribution]) -> str:
     parts = ["A full installation of Halation brings these packages. Their licenses follow.\n"]
     for package in sorted(packages, key=lambda package: package.name.lower()):
         parts += ["=" * 80, f"{package.name} {package.version}", f"License: {read_license(package)}"]
-        libraries = sorted({path.name for path in package.files or () if ".libs/" in str(path)})
+        libraries = sorted({path.name for path in package.files or () if _LIBRARY.search(path.name)})
         if libraries:
             parts.append(f"Libraries inside: {', '.join(libraries)}")
         parts += ["", *read_license_texts(package)]
@@ -143,7 +145,7 @@ def read_license(package: Distribution) -> str:
     fields = package.metadata
     classifiers = [line.rpartition(" :: ")[2] for line in fields.get_all("Classifier") or () if "License ::" in line]
     stated = fields.get("License-Expression") or ", ".join(classifiers) or fields.get("License") or "not stated"
-    return stated.strip().splitlines()[0]
+    return "see below" if "\n" in stated.strip() else stated.strip()
 
 
 def read_license_texts(package: Distribution) -> Iterator[str]:
