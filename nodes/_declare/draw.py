@@ -192,6 +192,13 @@ class Draw(Protocol):
         """
         ...
 
+    def formula(self, text: str, **names: Argument) -> Drawn:
+        """Four channels for each pixel, by a formula in the language of expressions.
+
+        It can use pictures and numbers by these names, and the time. The node's GLSL file includes lib/formula.glsl.
+        """
+        ...
+
     def blur(self, image: Pixels, sigma: float | tuple[float, float], edge: Edge = "clamp") -> Drawn:
         """Blur with a Gaussian; `sigma` is in pixels. A large sigma is computed on a smaller picture."""
         ...

@@ -56,4 +56,5 @@ vec4 diffusion_correct(float weight) {
     return known_at(pixel) > 0.5 ? here : here + weight * (diffusion_mean() + lack_at(pixel) - here);
 }
 
+// The guess with the change that makes up for what it lacks.
 vec4 diffusion_add() { return guess_at(pixel) + change_at(pixel); }

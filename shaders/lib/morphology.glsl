@@ -35,4 +35,5 @@ vec4 morphology_disc(int first, int last, int margin, int radius, int count, flo
     return extreme;
 }
 
+// The extremes for a radius between two whole ones.
 vec4 morphology_mix(vec4 smaller, vec4 larger, float part) { return mix(finite(smaller), finite(larger), part); }

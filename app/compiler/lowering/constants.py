@@ -61,3 +61,8 @@ def _read_object(kind: Kind, numbers: tuple[float, ...]) -> PlannedObject:
     """The object of a planned kind that numbers of a graph file stand for."""
     read = kind.facts.read
     return PlannedObject(content=read(numbers) if read else None)
+
+
+def find_choices(node: Node) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    """The options of every choice of a node, by value: its GLSL file reads them as macros."""
+    return tuple((name, value.choices) for name, value in node.values.items() if value.choices)

@@ -21,7 +21,6 @@ from halation.nodes import (
     Kernel,
     Kind,
     Motion,
-    Node,
     Overlap,
     Pixels,
     Reach,
@@ -32,6 +31,7 @@ from halation.nodes import (
     Size,
     Socket,
     Uniform,
+    Vector,
     glsl_type,
 )
 from msgspec.structs import replace
@@ -49,6 +49,7 @@ from ..ir import (
     Choice,
     ColorCall,
     ExternalProgram,
+    FormulaCall,
     Gather,
     HistoryRead,
     HostCall,
@@ -65,7 +66,7 @@ from ..ir import (
 )
 from ..library import Library
 from ..raster import CHANNELS
-from . import fourier, gaussian, padding, transforms
+from . import constants, formulas, fourier, gaussian, padding, transforms
 from .blurs import BlurBuilder
 from .node_inputs import DrawnPicture, NodeInputs, NodeResources
 from .tables import make_table
@@ -185,7 +186,7 @@ class Recorder:
             self._find_file(function),
             function,
             parameters,
-            find_choices(self._node),
+            self._find_choices(function),
             accessors=tuple(accessors),
             edge=edge,
             light=light,
@@ -203,8 +204,18 @@ class Recorder:
                 self._find_file(function),
                 function,
                 self._make_parameters(signature, named),
-                find_choices(self._node),
+                self._find_choices(function),
             )
+        )
+
+    def formula(self, text: str, **names: Argument) -> Drawn:
+        program, clock = formulas.write_formula(text, tuple(names), self._owner), (0.0, 0.0, 0.0)
+        if formulas.reads_time(text):
+            clock = (float(self.frame), (self.frame - self.start) / self.rate, self.rate)
+        parameters = self._make_parameters(program.text.functions[program.function], {"clock": clock, **names})
+        shape = self._make_shape(Vector(width=4), self.size)
+        return self._add_op(
+            FormulaCall((shape,), self._owner, self._shader, program.function, parameters, program=program)
         )
 
     def program(
@@ -321,6 +332,10 @@ class Recorder:
     def _find_file(self, function: str) -> str:
         return self._library.defining_file(self._shader, function, self._owner)
 
+    def _find_choices(self, function: str) -> tuple[tuple[str, tuple[str, ...]], ...]:
+        """The choices that the file of a function knows: those of the node in its own file, none in libraries."""
+        return constants.find_choices(self._node) if self._find_file(function) == self._shader else ()
+
     def _find_function(self, function: str) -> GlslFunction:
         return self._library.function(self._find_file(function), function, self._owner)
 
@@ -381,11 +396,6 @@ class Recorder:
                 operand = UniformConstant(_check_plain(item))
             parameters.append(Parameter(glsl, operand))
         return tuple(parameters)
-
-
-def find_choices(node: Node) -> tuple[tuple[str, tuple[str, ...]], ...]:
-    """The options of every choice of a node, by value: its GLSL file reads them as macros."""
-    return tuple((name, value.choices) for name, value in node.values.items() if value.choices)
 
 
 def _check_plain(item: Scalar) -> float | int | bool | tuple[float, ...]:

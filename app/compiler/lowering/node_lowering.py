@@ -31,7 +31,7 @@ from ..ir import Builder, Call, Choice, Memory, Operand, Parameter, PictureShape
 from ..library import Library
 from ..request import Request
 from . import constants, masks
-from .draws import Recorder, find_choices
+from .draws import Recorder
 from .expand import FlatGraph, find_stand_in
 from .graph_at_frames import GraphAtFrames
 from .node_inputs import DrawnPicture, NodeInputs, find_cameras, takes_field
@@ -294,7 +294,7 @@ class NodeLowering:
                 for socket in sockets
             )
             self._check_function(path, node, [glsl for _, glsl, _ in arguments], [item.glsl for item in sockets])
-            self._forms[key] = PointwiseForm(arguments, shapes, find_choices(node))
+            self._forms[key] = PointwiseForm(arguments, shapes, constants.find_choices(node))
         return self._forms[key]
 
     def _check_function(self, path: str, node: Node, takes: list[str], makes: list[str]) -> None:

@@ -1,4 +1,6 @@
-"""Parses an expression into nested evaluators (evaluate.py), by precedence climbing (Richards 1979; Clarke 1986).
+"""Parses an expression by precedence climbing (Richards 1979; Clarke 1986).
+
+What a part of an expression becomes is up to the `PartMaker`: `evaluate` makes nested evaluators.
 
 The operators from lowest to highest precedence; all are left-associative except ^ and ?: .
 
@@ -11,14 +13,18 @@ The operators from lowest to highest precedence; all are left-associative except
 from __future__ import annotations
 
 import math
-from typing import NoReturn
+from collections.abc import Sequence
+from typing import Generic, NoReturn, Protocol, TypeVar
 
 from ..names import did_you_mean
 from . import evaluate
 from .evaluate import CHANNELS, Evaluator
 from .fault import ExpressionError
-from .functions import FUNCTIONS, OPERATORS
+from .functions import FUNCTIONS, OPERATORS, ExpressionFunction
 from .tokens import Token, tokenize
+
+Part = TypeVar("Part")
+"""What a part of an expression becomes."""
 
 MAX_LENGTH = 1000
 """The longest expression, in characters: a choice, longer than any that a user types."""
@@ -43,28 +49,54 @@ _LEVELS = {
 _CONSTANTS = {"pi": math.pi, "tau": math.tau, "e": math.e, "true": True, "false": False}
 _CLOSING = {"(": ")", "[": "]"}
 
-ParsedPart = tuple[Evaluator, int]
-"""An evaluator, and how deep it is nested."""
+ParsedPart = tuple[Part, int]
+"""A part, and how deep it is nested."""
+
+
+class PartMaker(Protocol[Part]):
+    """Makes the parts of an expression from smaller ones: see `evaluate` for what each is."""
+
+    def make_constant(self, number: float | bool, /) -> Part: ...
+    def make_variable(self, name: str, /) -> Part: ...
+    def make_name(self, text: str, position: int, name: str, /) -> Part: ...
+    def make_call(
+        self, text: str, position: int, function: ExpressionFunction, arguments: Sequence[Part], /
+    ) -> Part: ...
+    def make_arithmetic(self, text: str, first: Part, steps: Sequence[tuple[str, int, Part]], /) -> Part: ...
+    def make_comparison(self, text: str, left: Part, name: str, position: int, right: Part, /) -> Part: ...
+    def make_logic(
+        self, text: str, first: Part, steps: Sequence[tuple[str, int, Part]], /, *, any_of: bool
+    ) -> Part: ...
+    def make_negation(self, text: str, position: int, code: Part, /) -> Part: ...
+    def make_sign(self, code: Part, /, *, minus: bool) -> Part: ...
+    def make_choice(self, text: str, position: int, condition: Part, yes: Part, no: Part, /) -> Part: ...
+    def make_channel(self, text: str, position: int, code: Part, name: str, /) -> Part: ...
+    def make_list(self, text: str, position: int, codes: Sequence[Part], /) -> Part: ...
 
 
 def parse_expression(text: str) -> Evaluator:
     """The evaluator of an expression. Raises ExpressionError."""
+    return parse_parts(text, evaluate)
+
+
+def parse_parts(text: str, maker: PartMaker[Part]) -> Part:
+    """What `maker` makes of an expression. Raises ExpressionError."""
     if len(text) > MAX_LENGTH:
         raise ExpressionError(text, MAX_LENGTH, f"the expression is longer than {MAX_LENGTH:,} characters")
     if not text.strip():
         raise ExpressionError(text, 0, "the expression is empty")
-    return _Parser(text).parse()
+    return _Parser(text, maker).parse()
 
 
-class _Parser:
+class _Parser(Generic[Part]):
     """A parser of one text."""
 
-    def __init__(self, text: str) -> None:
-        self._text = text
+    def __init__(self, text: str, maker: PartMaker[Part]) -> None:
+        self._text, self._maker = text, maker
         self._tokens = [*tokenize(text), Token("end", len(text), len(text), "")]
         self._place = self._depth = 0
 
-    def parse(self) -> Evaluator:
+    def parse(self) -> Part:
         code, _ = self._parse_choice(self._next)
         if self._next.kind != "end":
             self._refuse_rest()
@@ -87,7 +119,7 @@ class _Parser:
     def _fail(self, token: Token, sentence: str) -> NoReturn:
         raise ExpressionError(self._text, token.start, sentence)
 
-    def _check_depth(self, token: Token, code: Evaluator, *parts: ParsedPart) -> ParsedPart:
+    def _check_depth(self, token: Token, code: Part, *parts: ParsedPart[Part]) -> ParsedPart[Part]:
         """An evaluator with its depth, one more than that of its parts. Raises ExpressionError if it is too deep."""
         depth = 1 + max((depth for _, depth in parts), default=0)
         if depth > MAX_DEPTH:
@@ -100,7 +132,7 @@ class _Parser:
         if self._depth > MAX_DEPTH:
             self._fail(token, f"the expression is more than {MAX_DEPTH} levels deep")
 
-    def _parse_choice(self, opening: Token) -> ParsedPart:
+    def _parse_choice(self, opening: Token) -> ParsedPart[Part]:
         self._enter(opening)
         condition = self._parse_binary(_OR)
         token = self._take_if("?")
@@ -112,10 +144,10 @@ class _Parser:
             self._fail(self._next, "':' is missing: a choice is written condition ? yes : no")
         no = self._parse_choice(token)
         self._depth -= 1
-        code = evaluate.make_choice(self._text, token.start, condition[0], yes[0], no[0])
+        code = self._maker.make_choice(self._text, token.start, condition[0], yes[0], no[0])
         return self._check_depth(token, code, condition, yes, no)
 
-    def _parse_binary(self, level: int) -> ParsedPart:
+    def _parse_binary(self, level: int) -> ParsedPart[Part]:
         """Operands joined by operators of this level or higher precedence."""
         part = self._parse_unary()
         while (next_level := self._next_level()) >= level:
@@ -126,9 +158,9 @@ class _Parser:
         """The level of the next token if it is an operator, else 0."""
         return _LEVELS.get(self._next.text, 0) if self._next.kind in ("operator", "word") else 0
 
-    def _parse_chain(self, first: ParsedPart, level: int) -> ParsedPart:
+    def _parse_chain(self, first: ParsedPart[Part], level: int) -> ParsedPart[Part]:
         """All operators of one level after an operand, as one part, so that long sums are not deep."""
-        rest: list[tuple[Token, ParsedPart]] = []
+        rest: list[tuple[Token, ParsedPart[Part]]] = []
         while self._next_level() == level:
             token = self._take()
             if level == _COMPARE and rest:
@@ -138,14 +170,14 @@ class _Parser:
             self._depth -= 1
         steps = [(token.text, token.start, part[0]) for token, part in rest]
         if level in (_OR, _AND):
-            code = evaluate.make_logic(self._text, first[0], steps, any_of=level == _OR)
+            code = self._maker.make_logic(self._text, first[0], steps, any_of=level == _OR)
         elif level == _COMPARE:
-            code = evaluate.make_comparison(self._text, first[0], *steps[0])
+            code = self._maker.make_comparison(self._text, first[0], *steps[0])
         else:
-            code = evaluate.make_arithmetic(self._text, first[0], steps)
+            code = self._maker.make_arithmetic(self._text, first[0], steps)
         return self._check_depth(rest[0][0], code, first, *(part for _, part in rest))
 
-    def _parse_unary(self) -> ParsedPart:
+    def _parse_unary(self) -> ParsedPart[Part]:
         """A power, or an operand with a sign or a negation."""
         token = self._take_if("-", "+", "!", "not")
         if token is None:
@@ -156,39 +188,39 @@ class _Parser:
             self._enter(token)
             power = self._parse_unary()
             self._depth -= 1
-            code = evaluate.make_arithmetic(self._text, base[0], [("^", token.start, power[0])])
+            code = self._maker.make_arithmetic(self._text, base[0], [("^", token.start, power[0])])
             return self._check_depth(token, code, base, power)
         self._enter(token)
         part = self._parse_binary(_COMPARE) if token.text == "not" else self._parse_unary()
         self._depth -= 1
         if token.text in ("-", "+"):
-            code = evaluate.make_sign(part[0], minus=token.text == "-")
+            code = self._maker.make_sign(part[0], minus=token.text == "-")
         else:
-            code = evaluate.make_negation(self._text, token.start, part[0])
+            code = self._maker.make_negation(self._text, token.start, part[0])
         return self._check_depth(token, code, part)
 
-    def _parse_postfix(self) -> ParsedPart:
+    def _parse_postfix(self) -> ParsedPart[Part]:
         part = self._parse_primary()
         while self._take_if("."):
             name = self._take()
             if name.text not in CHANNELS:
                 self._fail(name, "a channel is missing: x, y, z, w or r, g, b, a")
-            part = self._check_depth(name, evaluate.make_channel(self._text, name.start, part[0], name.text), part)
+            part = self._check_depth(name, self._maker.make_channel(self._text, name.start, part[0], name.text), part)
         return part
 
-    def _parse_primary(self) -> ParsedPart:
+    def _parse_primary(self) -> ParsedPart[Part]:
         token = self._take()
         if token.kind == "number":
             number = float(token.text)
             if math.isinf(number):
                 self._fail(token, f"{token.text} is too large")
-            return self._check_depth(token, evaluate.make_constant(number))
+            return self._check_depth(token, self._maker.make_constant(number))
         if token.kind == "constant":
-            return self._check_depth(token, evaluate.make_constant(_CONSTANTS[token.text]))
+            return self._check_depth(token, self._maker.make_constant(_CONSTANTS[token.text]))
         if token.kind == "variable":
-            return self._check_depth(token, evaluate.make_variable(token.text))
+            return self._check_depth(token, self._maker.make_variable(token.text))
         if token.kind == "name":
-            return self._check_depth(token, evaluate.make_name(self._text, token.start, token.name))
+            return self._check_depth(token, self._maker.make_name(self._text, token.start, token.name))
         if token.kind == "function":
             return self._parse_call(token)
         if token.kind == "bracket" and token.text == "(":
@@ -200,23 +232,23 @@ class _Parser:
             if not parts:
                 self._fail(token, "a list has at least one number")
             return self._check_depth(
-                token, evaluate.make_list(self._text, token.start, [code for code, _ in parts]), *parts
+                token, self._maker.make_list(self._text, token.start, [code for code, _ in parts]), *parts
             )
         return self._refuse(token)
 
-    def _parse_call(self, token: Token) -> ParsedPart:
+    def _parse_call(self, token: Token) -> ParsedPart[Part]:
         function = FUNCTIONS.get(token.text)
         if function is None:
             self._fail(token, f"there is no function '{token.text}'{did_you_mean(token.text, FUNCTIONS)}")
         parts = self._parse_list(self._take())
         if len(parts) not in function.counts:
             self._fail(token, f"{function.name} does not take {len(parts)} values: write {function.signature}")
-        code = evaluate.make_call(self._text, token.start, function, [code for code, _ in parts])
+        code = self._maker.make_call(self._text, token.start, function, [code for code, _ in parts])
         return self._check_depth(token, code, *parts)
 
-    def _parse_list(self, opening: Token) -> list[ParsedPart]:
+    def _parse_list(self, opening: Token) -> list[ParsedPart[Part]]:
         """The expressions between brackets, separated by commas; the opening bracket is already taken."""
-        parts: list[ParsedPart] = []
+        parts: list[ParsedPart[Part]] = []
         if self._take_if(_CLOSING[opening.text]):
             return parts
         while True:
