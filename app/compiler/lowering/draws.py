@@ -25,7 +25,6 @@ from halation.nodes import (
     Pixels,
     Reach,
     Render,
-    Scalar,
     Scene,
     ShaderText,
     Size,
@@ -393,11 +392,6 @@ class Recorder:
                 operand = self._find_operand(item)
             else:
                 assert isinstance(item, (float, int, tuple))
-                operand = UniformConstant(_check_plain(item))
+                operand = UniformConstant(item)
             parameters.append(Parameter(glsl, operand))
         return tuple(parameters)
-
-
-def _check_plain(item: Scalar) -> float | int | bool | tuple[float, ...]:
-    assert not isinstance(item, str)
-    return item
