@@ -24,6 +24,7 @@ equal pixels, and a field that a hash forgets would show stale pixels.
 
 from __future__ import annotations
 
+from .formula_call import FormulaCall
 from .host_call import HostCall
 from .operation import Op, SourceOp
 from .operations import (
@@ -35,7 +36,6 @@ from .operations import (
     ColorCall,
     Convolve,
     ExternalProgram,
-    FormulaCall,
     FunctionOp,
     Gather,
     HistoryRead,

@@ -190,18 +190,6 @@ class ColorCall(Call, frozen=True, kw_only=True):
         return False
 
 
-class FormulaCall(ColorCall, frozen=True, kw_only=True):
-    """A pointwise function that was written for a formula of the user; it calls functions of the file `shader`."""
-
-    @property
-    def label(self) -> str:
-        return "formula"
-
-    @property
-    def files(self) -> tuple[str, ...]:
-        return (self.shader,)
-
-
 class Gather(FunctionOp, frozen=True, kw_only=True):
     """A GLSL function that reads its pictures anywhere."""
 
