@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from enum import StrEnum
 from typing import Annotated, Literal, get_type_hints
 
 from msgspec import Struct
 from msgspec.structs import fields as fields_of
 
+from .draw import Affine
 from .items import ItemSet, NamedItem
+from .sockets import Size
 from .splines import join_points
 from .values import Doc, Fraction, Handle, ItemKind, Items, Slider, SplinePoints, read_value
 
@@ -74,6 +77,17 @@ class RotoShape(Struct, frozen=True):
     )
     first: Annotated[int, Slider(1, 200, unit="count", doc="The first frame of the range.")] = 1
     last: Annotated[int, Slider(1, 200, unit="count", doc="The last frame of the range.")] = 100
+
+    def find_affine(self, size: Size, turn: float) -> Affine:
+        """The map from fractions of the picture, as points have them, to its pixels; `turn` is the angle in radians."""
+        (width, height), (grow_x, grow_y), cosine, sine = size, self.scale, math.cos(turn), math.sin(turn)
+        pivot_x, pivot_y = self.pivot[0] * width, self.pivot[1] * height
+        left, top = pivot_x + self.position[0] * width, pivot_y + self.position[1] * height
+        across, down = pivot_x * grow_x, pivot_y * grow_y
+        return (
+            cosine * grow_x * width, -sine * grow_y * height, left - cosine * across + sine * down,
+            sine * grow_x * width, cosine * grow_y * height, top - sine * across - cosine * down,
+        )  # fmt: skip
 
     def is_active(self, frame: int) -> bool:
         """True if the outline counts at a frame."""

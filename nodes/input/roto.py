@@ -182,20 +182,16 @@ def _draw_coverage(draw: Draw, mask: Drawn, paths: list[_Path]) -> Drawn:
 
 def _trace_path(outline: RotoShape, size: Size) -> _Path:
     """An outline, moved as it says, in pixels."""
-    width, height = size
     points = split_points(outline.points)
-    pivot_x, pivot_y = outline.pivot[0] * width, outline.pivot[1] * height
-    turn_x, turn_y = math.cos(outline.rotation), math.sin(outline.rotation)
-    scale_x, scale_y = outline.scale
-    left, top = pivot_x + outline.position[0] * width, pivot_y + outline.position[1] * height
+    a, b, c, d, e, f = outline.find_affine(size, outline.rotation)
 
     def move(place: tuple[float, float]) -> tuple[float, float]:
-        x, y = (place[0] * width - pivot_x) * scale_x, (place[1] * height - pivot_y) * scale_y
-        return _limit(turn_x * x - turn_y * y + left), _limit(turn_y * x + turn_x * y + top)
+        x, y = place
+        return _limit(a * x + b * y + c), _limit(d * x + e * y + f)
 
     moved = [(move(first), move(second), move(third)) for first, second, third, _ in list_curves(points)]
     curves = tuple((*curve, after[0]) for curve, after in zip(moved, (*moved[1:], *moved[:1]), strict=True))
-    feathers = tuple(max(point[6], 0.0) * height for point in points)
+    feathers = tuple(max(point[6], 0.0) * size[1] for point in points)
     return _Path(outline, curves, feathers, tuple(map(_count_spans, curves)))
 
 

@@ -14,6 +14,7 @@ from .geometry import Point, Sight
 from .holding import HandleTarget, MouseHold, aim
 from .lights import add_light, can_add, make_merge_token, place_light, turn_spot
 from .orbit import Orbit, move_camera, scene_at
+from .splines import insert_on_curve
 
 if TYPE_CHECKING:
     from .context import ViewerContext
@@ -91,6 +92,9 @@ class ViewerInput:
         if twice and target.kind in ("pan", "orbit") and sight.under(at) and can_add(self._context):
             add_light(self._context, sight.fraction(at))
             return
+        if twice and target.spline is not None and target.spline.part == "curve":
+            insert_on_curve(self._context, target.spline)
+            return
         self._hold = MouseHold.begin(self._context, sight, at, target, ui_scale())
 
     def _drag(self, sight: Sight, at: Point, active: bool) -> None:
@@ -104,7 +108,9 @@ class ViewerInput:
             self._hold = None
             return
         io = imgui.get_io()
-        self._hold.drag(sight, at, (delta.x, delta.y), is_free=io.key_ctrl, is_constrained=io.key_shift)
+        self._hold.drag(
+            sight, at, (delta.x, delta.y), is_free=io.key_ctrl, is_constrained=io.key_shift, is_broken=io.key_alt
+        )
         if not active:
             self._hold.release(sight, at)
             self._hold = None
@@ -147,7 +153,7 @@ class ViewerInput:
         target = self._hold.aim if self._hold else self.aim
         if target.kind == "handle" and target.part in _CURSORS:
             imgui.set_mouse_cursor(_CURSORS[target.part])
-        elif target.kind in ("handle", "track", "sun") or target.lamp:
+        elif target.kind in ("handle", "track", "sun") or target.lamp or target.spline:
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
         elif target.kind == "matte" or (target.kind in ("pan", "orbit") and self._hold and self._hold.moved):
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)

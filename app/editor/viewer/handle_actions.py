@@ -8,6 +8,7 @@ from ..shared.action import Action
 from .focus import find_focus_port, pick_focus
 from .lights import can_remove, remove_chosen_light
 from .orbit import frame_scene
+from .splines import can_draw, can_remove_point, remove_point, toggle_pen
 
 if TYPE_CHECKING:
     from .context import ViewerContext
@@ -28,6 +29,13 @@ def _picks(context: ViewerContext) -> bool:
 
 def _toggle_gizmos(context: ViewerContext) -> None:
     context.viewer.has_gizmos = not context.viewer.has_gizmos
+
+
+def _remove_chosen(context: ViewerContext) -> None:
+    if can_remove_point(context):
+        remove_point(context)
+    else:
+        remove_chosen_light(context)
 
 
 HANDLES: tuple[Action[ViewerContext], ...] = (
@@ -79,13 +87,28 @@ HANDLES: tuple[Action[ViewerContext], ...] = (
         doc="Click on the picture to focus the selected depth of field node there.",
     ),
     Action(
+        "viewer.draw_shape",
+        "Draw Shape",
+        toggle_pen,
+        "Viewer/Handles",
+        "N",
+        "viewer",
+        can_draw,
+        lambda context: context.viewer.pen.is_drawing,
+        contexts=frozenset({"viewer"}),
+        doc="Click on the picture to set corners of a new shape of the selected node, drag to set smooth points, and "
+        "click the first point to close it. Afterwards points and tangents can be dragged; Alt pulls tangents out of a "
+        "point, or moves one tangent alone. A double click on the line adds a point.",
+    ),
+    Action(
         "viewer.remove_light",
-        "Remove Light",
-        remove_chosen_light,
+        "Remove Light or Point",
+        _remove_chosen,
         "Viewer/Handles",
         "Delete",
         "viewer",
-        can_remove,
-        doc="Remove the selected light of the selected node. A double click on the picture adds one.",
+        lambda context: can_remove_point(context) or can_remove(context),
+        doc="Remove the selected light of the selected node, or the selected point of its shape. A double click on the "
+        "picture adds a light, one on a line of a shape a point.",
     ),
 )

@@ -16,6 +16,7 @@ from .lights import Lamp, change_light, drop_light, lamps, make_merge_token, pla
 from .mattes import click, picks
 from .orbit import Orbit, aspect_of, move_camera, scene_at
 from .snapping import Snapping
+from .splines import SplineTarget, aim_pen, can_draw, find_pen, find_spline, lift_pen, move_part
 
 if TYPE_CHECKING:
     from .context import ViewerContext
@@ -37,6 +38,8 @@ HoldKind = Literal[
     "measure",
     "pick",
     "matte",
+    "spline",
+    "pen",
 ]
 
 ARM = 56.0
@@ -62,6 +65,7 @@ class HandleTarget:
     part: str = ""
     """The grip of the gizmo."""
     lamp: Lamp | None = None
+    spline: SplineTarget | None = None
 
 
 def aim(
@@ -83,10 +87,14 @@ def aim(
         return HandleTarget("pick")
     if viewer.drawing_region:
         return HandleTarget("new region")
+    if viewer.pen.is_drawing and can_draw(context):
+        return HandleTarget("pen", part=find_pen(context, sight, at, scale))
     if ctrl:
         return HandleTarget("measure")
     if grip_target := find_grip(list_gizmos(context, sight, scale), sight, at, scale):
         return HandleTarget("handle", gizmo=grip_target[0], part=grip_target[1].part)
+    if spline_target := find_spline(context, sight, at, scale):
+        return HandleTarget("spline", spline=spline_target)
     if light_target := _light(context, sight, at, scale, alt, shift):
         return light_target
     if viewer.compare == "wipe" and sight.under(at):
@@ -148,6 +156,11 @@ class MouseHold:
         if aim.gizmo is not None:
             grip = next(grip.at for grip in aim.gizmo.grips if grip.part == aim.part)
             held_point = grip[0] / sight.picture[0], grip[1] / sight.picture[1]
+        if aim.spline is not None:
+            context.items[str(aim.spline.outline.port)] = aim.spline.outline.name
+            context.viewer.pen.point = aim.spline.index if aim.spline.part != "curve" else -1
+        if aim.kind == "pen" and aim.part == "new":
+            aim_pen(context, (x, y), None)
         if aim.lamp is not None:
             held_point, context.items[str(aim.lamp.port)] = aim.lamp.at, aim.lamp.name
             if aim.kind in ("goal", "goal depth") and aim.lamp.aims:
@@ -167,8 +180,20 @@ class MouseHold:
             hold.box = context.viewer.region
         return hold
 
-    def drag(self, sight: Sight, at: Point, by: Point, *, is_free: bool = False, is_constrained: bool = False) -> None:
-        """Follow the mouse to `at`, `by` screen units from where it was a frame ago; nothing snaps if it is free."""
+    def drag(
+        self,
+        sight: Sight,
+        at: Point,
+        by: Point,
+        *,
+        is_free: bool = False,
+        is_constrained: bool = False,
+        is_broken: bool = False,
+    ) -> None:
+        """Follow the mouse to `at`, `by` screen units from where it was a frame ago.
+
+        Nothing snaps if it is free; tangents of a spline move alone if they are broken.
+        """
         self.moved = self.moved or math.dist(at, self.start) > 3.0
         viewer, (x, y), begun = self.context.viewer, sight.fraction(at), sight.fraction(self.start)
         match self.aim.kind:
@@ -180,6 +205,10 @@ class MouseHold:
                 self._move_grip(sight, (x + self.offset[0], y + self.offset[1]), is_free, is_constrained)
             case "light" | "light depth" | "light drop" | "goal" | "goal depth" | "sun" if self.moved:
                 self._move_light(sight, at, (x + self.offset[0], y + self.offset[1]))
+            case "spline" if self.moved and self.aim.spline and self.aim.spline.part != "curve":
+                move_part(self.context, self.aim.spline, (x, y), is_broken=is_broken, pulls_tangents=is_broken)
+            case "pen" if self.moved and self.aim.part == "new":
+                aim_pen(self.context, begun, (x, y))
             case "orbit" | "track" if self.moved and self.orbit is not None:
                 self._move_camera(sight, at, self.orbit)
             case "wipe" if self.aim.grip == "angle":
@@ -205,6 +234,10 @@ class MouseHold:
             viewer.deferred = None
         if self.token:
             self.context.session.seal()
+        elif self.aim.kind == "pen" and self.aim.part == "new":
+            lift_pen(self.context)
+        elif self.aim.kind == "pen":
+            viewer.pen.end()
         elif self.aim.kind == "matte" and not self.moved:
             click(self.context, sight, at)
         elif self.aim.kind == "new region":
@@ -220,6 +253,8 @@ class MouseHold:
         """The merge token of the drag's edits; "" if it does not edit the document."""
         if self.aim.gizmo is not None:
             return f"handle {self.aim.gizmo.grips[0].port} {self.aim.part}"
+        if self.aim.spline is not None:
+            return self.aim.spline.outline.token
         return make_merge_token(self.aim.lamp) if self.aim.lamp else "orbit" if self.orbit else ""
 
     def _move_light(self, sight: Sight, at: Point, to: Point) -> None:

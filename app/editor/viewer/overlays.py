@@ -17,6 +17,7 @@ from .ground import depth_at
 from .holding import ARM
 from .lamp_lines import draw_dome, draw_lamps
 from .mattes import draw_name
+from .spline_lines import draw_splines
 from .strokes import BLACK, WHITE, around, cross, draw_label, frame
 
 if TYPE_CHECKING:
@@ -37,6 +38,7 @@ def draw_overlays(context: ViewerContext, sight: Sight) -> None:
         _marker(lines, sight.place(marker), str(number))
     if viewer.compare == "wipe" and context.session.views.find_port("B") is not None:
         _wipe(context, lines, sight)
+    draw_splines(context, lines, sight)
     draw_gizmos(context, lines, sight)
     draw_lamps(context, lines, sight)
     draw_dome(context, lines, sight)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from .pacing import Pace
+from .pen import SplinePen
 from .reading import ValueReader
 
 if TYPE_CHECKING:
@@ -100,6 +101,7 @@ class ViewerState:
     """Values of a drag that count when the button is released."""
     orbiting: bool = False
     """True lets the mouse move the camera of the viewed scene, not the picture."""
+    pen: SplinePen = field(default_factory=SplinePen)
     scene: str = ""
     """The node of that scene; "" if there is none."""
     reader: ValueReader = field(default_factory=ValueReader)

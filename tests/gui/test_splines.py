@@ -1,0 +1,126 @@
+"""Splines on the picture: drawn with the pen, and their points and tangents moved, added and removed by the mouse."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from gui_driver import Ui
+from halation import document
+from halation.authoring.commands import AnimateValues
+from halation.authoring.edits.element_id import ElementId
+from halation.graph import Graph, Key, Keys, Output, Port, Settings
+from halation.nodes import Kind, RotoShape, catalogue, join_points, name_roto_shapes, roto_shapes_of, split_points
+from halation.resources.sandbox import UNRESTRICTED
+
+PORT = Port("roto", "shapes")
+POINTS = Port("roto", "shapes.box.points")
+BOX = ((0.3, 0.3), (0.7, 0.3), (0.7, 0.7), (0.3, 0.7))
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    """A square, moved by a tenth of the picture."""
+    shapes = name_roto_shapes(box=RotoShape(points=join_points(BOX), position=(0.1, 0.0)))
+    graph = Graph(settings=Settings((320, 180)), outputs={"image": Output(Kind.IMAGE)})
+    graph = graph.add("roto", catalogue()["roto"](shapes=shapes))
+    graph = graph.connect(Port("roto", "out"), Port("outputs", "image"))
+    document.save(graph, tmp_path / "graph.json", sandbox=UNRESTRICTED)
+    return tmp_path / "graph.json"
+
+
+def start(ui: Ui) -> int:
+    """Select the node; how many steps the history has."""
+    ui.session.select([ElementId("roto")])
+    ui.settled()
+    ui.move(at(ui, 0.05, 0.05))
+    ui.settled()
+    return len(ui.session.history.steps)
+
+
+def at(ui: Ui, x: float, y: float) -> tuple[float, float]:
+    """A point of the picture, by fractions."""
+    return ui.at("viewer image", (x, y))
+
+
+def points(ui: Ui) -> tuple[tuple[float, ...], ...]:
+    return split_points(ui.session.time.evaluated_graph.value(POINTS))
+
+
+def test_a_shape_is_drawn_with_the_pen(gui, path: Path) -> None:
+    def body(ui: Ui) -> None:
+        steps = start(ui)
+        ui.keys("N")
+        assert ui.editor.viewer.pen.is_drawing
+        for place in ((0.1, 0.6), (0.3, 0.6)):
+            ui.click(at(ui, *place))
+            ui.settled()
+        ui.drag(at(ui, 0.3, 0.9), at(ui, 0.2, 0.9))
+        ui.settled()
+        assert len(ui.session.history.steps) == steps + 3
+        ui.shot("pen.png")
+        ui.click(at(ui, 0.1, 0.6))
+        ui.settled()
+        assert not ui.editor.viewer.pen.is_drawing and len(ui.session.history.steps) == steps + 3
+        drawn = ui.session.graph.value(PORT)["shape_1"].fields["points"]
+        rows = split_points(drawn)
+        assert rows[0][:6] == pytest.approx((0.1, 0.6, 0.0, 0.0, 0.0, 0.0), abs=0.004)
+        assert rows[2][:6] == pytest.approx((0.3, 0.9, 0.1, 0.0, -0.1, 0.0), abs=0.006)
+        for left in (2, 1):
+            ui.keys("Ctrl+Z")
+            assert len(split_points(ui.session.graph.value(PORT)["shape_1"].fields["points"])) == left
+        ui.keys("Ctrl+Z")
+        assert list(ui.session.graph.value(PORT)) == ["box"]
+
+    gui(body, path)
+
+
+def test_points_and_tangents_are_dragged_where_the_shape_is(gui, path: Path) -> None:
+    def body(ui: Ui) -> None:
+        steps = start(ui)
+        ui.drag(f"point 0 {POINTS}", at(ui, 0.3, 0.2))
+        assert points(ui)[0][:2] == pytest.approx((0.2, 0.2), abs=0.005)
+        assert len(ui.session.history.steps) == steps + 1
+        ui.drag(f"point 0 {POINTS}", at(ui, 0.4, 0.2), keys="Alt")
+        smooth = points(ui)[0]
+        assert smooth[:6] == pytest.approx((0.2, 0.2, -0.1, 0.0, 0.1, 0.0), abs=0.01)
+        ui.shot("tangents.png")
+        ui.drag(f"tangent out {POINTS}", at(ui, 0.4, 0.1))
+        assert points(ui)[0][2:6] == pytest.approx((-0.1, 0.1, 0.1, -0.1), abs=0.01)
+        ui.drag(f"tangent in {POINTS}", at(ui, 0.2, 0.2), keys="Alt")
+        assert points(ui)[0][2:6] == pytest.approx((-0.1, 0.0, 0.1, -0.1), abs=0.01)
+        assert len(ui.session.history.steps) == steps + 4
+        for _ in range(4):
+            ui.keys("Ctrl+Z")
+        assert [point[:2] for point in points(ui)] == list(BOX)
+
+    gui(body, path)
+
+
+def test_points_are_inserted_and_removed(gui, path: Path) -> None:
+    def body(ui: Ui) -> None:
+        steps = start(ui)
+        ui.double_click(at(ui, 0.6, 0.3))
+        ui.settled()
+        assert len(points(ui)) == 5 and points(ui)[1][:2] == pytest.approx((0.5, 0.3), abs=0.005)
+        ui.keys("Delete")
+        assert [point[:2] for point in points(ui)] == list(BOX)
+        assert len(ui.session.history.steps) == steps + 2
+        assert len(roto_shapes_of(ui.session.graph.value(PORT))) == 1
+
+    gui(body, path)
+
+
+def test_a_drag_sets_a_key_where_there_are_keys(gui, path: Path) -> None:
+    def body(ui: Ui) -> None:
+        start(ui)
+        ui.session.apply(AnimateValues({POINTS: Keys((Key(1, ui.session.graph.value(POINTS)),))}, "Animate"))
+        ui.session.time.seek(5)
+        ui.settled()
+        ui.drag(f"point 0 {POINTS}", at(ui, 0.3, 0.2))
+        animation = ui.session.graph.animation[POINTS]
+        assert isinstance(animation, Keys) and [key.frame for key in animation.keys] == [1, 5]
+        ui.session.time.seek(3)
+        assert points(ui)[0][:2] == pytest.approx((0.25, 0.25), abs=0.005)
+
+    gui(body, path)
