@@ -17,7 +17,7 @@ BLENDER = {
     "Directional Blur": "directional_blur",
     "Vector Blur": "motion_blur",
     "Anti-Aliasing": "smaa fxaa",
-    "Denoise": "bilateral_blur median frame_average",
+    "Denoise": "denoise bilateral_blur median frame_average",
     "Despeckle": "median",
     "Filter": "convolve3x3",
     "Convolve": "convolve3x3 kernel_glare",

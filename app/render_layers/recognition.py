@@ -16,7 +16,7 @@ from ..media.channels import is_depth
 from ..media.layers import Layer, normalize_name, suggest_layers
 from .naming import HINTS, PATTERNS, SCHEMES, RenderProgram, Role
 
-_GROUP = re.compile(r"(?:combined|rgba?|beauty)_(.+)", re.IGNORECASE)
+_GROUP = re.compile(r"(?:combined|rgba?|beauty|(?:vray)?light_?select)_(.+)", re.IGNORECASE)
 _RANKS = re.compile(r"u?(?P<name>.*crypto.*?)(?P<rank>\d\d)?", re.IGNORECASE)
 _CRYPTOMATTES = (
     ("material", Role.CRYPTOMATTE_MATERIAL),
@@ -100,6 +100,14 @@ def recognize_passes(
     if not any(item.role is Role.BEAUTY for item in passes):
         passes = list(_choose_beauty(passes))
     return tuple(passes)
+
+
+def find_light_groups(passes: Iterable[RenderPass]) -> dict[str, Layer]:
+    """The layers of light groups by the names of the groups, in the view layer of the picture."""
+    passes = tuple(passes)
+    home = next((item.group for item in passes if item.role is Role.BEAUTY), "")
+    matches = [(item, _GROUP.fullmatch(item.name)) for item in passes if item.role is Role.LIGHT_GROUP]
+    return {match[1]: item.layer for item, match in matches if match and item.group == home}
 
 
 def find_named_role(name: str) -> Role | None:

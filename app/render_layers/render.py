@@ -13,6 +13,7 @@ from ..resources.sandbox import Sandbox
 from .analysis import analyze_render
 from .mattes import find_mattes
 from .naming import Role
+from .recognition import find_light_groups
 
 _DATA = frozenset(
     {
@@ -53,6 +54,7 @@ def read_render(path: str, named: Mapping[str, str] = MappingProxyType({}), *, s
         ),
         analysis.camera.camera,
         find_mattes(analysis),
+        MappingProxyType({name: layer.full_name for name, layer in find_light_groups(analysis.passes).items()}),
     )
 
 

@@ -40,6 +40,7 @@ from .lengths import (
     space_pixels,
     unit_factor,
 )
+from .light_groups import LightGroup, LightGroupSet, light_groups_of, name_light_groups
 from .lights import (
     LIGHTS,
     MAX_LIGHTS,
@@ -169,6 +170,8 @@ __all__ = [
     "KindFacts",
     "LengthUnits",
     "Light",
+    "LightGroup",
+    "LightGroupSet",
     "LightKind",
     "LightSet",
     "LookupFile",
@@ -235,6 +238,7 @@ __all__ = [
     "item_of",
     "join_points",
     "length_unit_fault",
+    "light_groups_of",
     "light_of",
     "lights_of",
     "list_curves",
@@ -243,6 +247,7 @@ __all__ = [
     "make_ellipse",
     "matte_of",
     "murmur3",
+    "name_light_groups",
     "name_lights",
     "name_reference",
     "name_roto_shapes",

@@ -41,3 +41,5 @@ class Render(Struct, frozen=True):
     meanings: Mapping[str, Meaning] = field(default_factory=lambda: MappingProxyType[str, Meaning]({}))
     camera: CameraModel | None = None
     mattes: tuple[Matte, ...] = ()
+    light_groups: Mapping[str, str] = field(default_factory=lambda: MappingProxyType[str, str]({}))
+    """The layer of each group of lights, by the name of the group."""
