@@ -39,6 +39,7 @@ NOTES = (
     "Slider",
     "Doc",
     "Swatch",
+    "Wheel",
     "Handle",
     "Dial",
     "File",

@@ -24,6 +24,11 @@ MAX_RECENT = 20
 MAX_SCALE = 3.0
 MIN_SCALE = 0.75
 
+MAX_SWATCHES = 24
+
+SwatchColor = tuple[float, float, float, float]
+"""A scene-linear color with its alpha."""
+
 Purpose = Literal["graph", "image", "table", "scene", "config", "code", "export"]
 
 
@@ -52,7 +57,8 @@ class Preferences:
     that differ from it, by action; "" stands for none.
 
     `recent` has the newest first. `folders` are those used last, by purpose. `autosave` is in seconds,
-    `memory_budget` in MiB. `isf_folders` hold shaders that can be added, `preset_folders` presets. `extra` keeps what
+    `memory_budget` in MiB. `isf_folders` hold shaders that can be added, `preset_folders` presets. `swatches` are colors that the
+    user keeps. `extra` keeps what
     another version of Halation wrote.
     """
 
@@ -72,6 +78,7 @@ class Preferences:
     proxy_while_dragging: bool = True
     isf_folders: tuple[str, ...] = ()
     preset_folders: tuple[str, ...] = ()
+    swatches: tuple[SwatchColor, ...] = ()
     extra: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType[str, Any]({}))
 
 
@@ -118,6 +125,15 @@ class PreferenceStore:
         self.current = replace(
             self.current, recent=tuple(recent for recent in self.current.recent if recent.path != str(path))
         )
+
+    def add_swatch(self, color: SwatchColor) -> None:
+        """Keep a color among the swatches, the newest last; the oldest one goes when there are too many."""
+        others = (swatch for swatch in self.current.swatches if swatch != color)
+        self.change(swatches=(*others, color)[-MAX_SWATCHES:])
+
+    def remove_swatch(self, color: SwatchColor) -> None:
+        """Take a color off the swatches."""
+        self.change(swatches=tuple(swatch for swatch in self.current.swatches if swatch != color))
 
     def folder(self, purpose: Purpose) -> str:
         """The folder that was used last for a purpose; "" if there is none."""

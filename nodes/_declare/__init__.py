@@ -117,6 +117,7 @@ from .values import (
     Uniform,
     Unit,
     Value,
+    Wheel,
 )
 
 __all__ = [
@@ -226,6 +227,7 @@ __all__ = [
     "Unit",
     "Value",
     "Vector",
+    "Wheel",
     "convert_length",
     "curve_at",
     "curve_knots",

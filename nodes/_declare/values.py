@@ -85,6 +85,15 @@ class Swatch(Struct, frozen=True):
     """The value is a scene-linear RGBA color, edited with a picker. Components may leave 0..1."""
 
 
+class Wheel(Struct, frozen=True):
+    """The value is a color that balances a picture, and its default is gray: interfaces offer a wheel for it.
+
+    The rim of the wheel is `reach` away from gray, in the numbers of the color.
+    """
+
+    reach: float
+
+
 class Handle(Struct, frozen=True):
     """The value is a position in fractions of the picture, 0,0 at the top left, dragged in the viewer."""
 
@@ -224,6 +233,8 @@ class Value(Struct, frozen=True):
     """What a file is expected to be."""
     handle: bool = False
     """True for a position that is dragged in the viewer."""
+    wheel: float = 0.0
+    """How far from gray the rim of its wheel is, for a color that balances a picture; 0 for others."""
     turns: Turns | Literal[""] = ""
     """Which way it turns, for an angle in the plane of the picture."""
     file: str = ""
@@ -284,6 +295,8 @@ def read_value(name: str, hint: Any, default: Any) -> Value:
             facts["doc"] = note.text
         elif isinstance(note, Swatch):
             facts["type"] = "color"
+        elif isinstance(note, Wheel):
+            facts["wheel"] = note.reach
         elif isinstance(note, File):
             facts |= {"type": "path", "layer_by": note.layer, "holds": note.holds}
         elif isinstance(note, OfLayer):

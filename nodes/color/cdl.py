@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import RGBA, Doc, Image, Pointwise, Slider, Trait
+from .._declare import RGBA, Doc, Image, Pointwise, Slider, Trait, Wheel
 
 
 class Cdl(Pointwise):
@@ -22,9 +22,9 @@ class Cdl(Pointwise):
             "clamp keeps all light; light below 0 then skips the power, as in OpenColorIO."
         ),
     ] = "no clamp"
-    slope: Annotated[RGBA, Doc("Factor on the light, channel by channel.")] = (1.0, 1.0, 1.0, 1.0)
-    offset: Annotated[RGBA, Doc("Light added after the slope.")] = (0.0, 0.0, 0.0, 0.0)
-    power: Annotated[RGBA, Doc("Above 1 darkens the midtones, below 1 brightens them.")] = (1.0, 1.0, 1.0, 1.0)
+    slope: Annotated[RGBA, Wheel(0.5), Doc("Factor on the light, channel by channel.")] = (1.0, 1.0, 1.0, 1.0)
+    offset: Annotated[RGBA, Wheel(0.2), Doc("Light added after the slope.")] = (0.0, 0.0, 0.0, 0.0)
+    power: Annotated[RGBA, Wheel(0.5), Doc("Above 1 darkens the midtones, below 1 brightens them.")] = (1.0, 1.0, 1.0, 1.0)
     saturation: Annotated[
         float,
         Slider(0.0, 2.0, unit="ratio", minimum=0.0, doc="0 is black and white, 1 unchanged, 2 twice as far from gray."),

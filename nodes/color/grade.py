@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import RGBA, Doc, Fraction, Image, Pointwise, Slider
+from .._declare import RGBA, Doc, Fraction, Image, Pointwise, Slider, Wheel
 
 
 class Grade(Pointwise):
@@ -19,9 +19,14 @@ class Grade(Pointwise):
     )  # fmt: skip
 
     image = Image()
-    lift: Annotated[RGBA, Doc("What black becomes, while white stays.")] = (0.0, 0.0, 0.0, 0.0)
-    gamma: Annotated[RGBA, Doc("Above 1 brightens the midtones, while black and white stay.")] = (1.0, 1.0, 1.0, 1.0)
-    gain: Annotated[RGBA, Doc("What white becomes, while black stays.")] = (1.0, 1.0, 1.0, 1.0)
+    lift: Annotated[RGBA, Wheel(0.2), Doc("What black becomes, while white stays.")] = (0.0, 0.0, 0.0, 0.0)
+    gamma: Annotated[RGBA, Wheel(0.5), Doc("Above 1 brightens the midtones, while black and white stay.")] = (
+        1.0,
+        1.0,
+        1.0,
+        1.0,
+    )
+    gain: Annotated[RGBA, Wheel(0.5), Doc("What white becomes, while black stays.")] = (1.0, 1.0, 1.0, 1.0)
     offset: Annotated[RGBA, Doc("Light added everywhere.")] = (0.0, 0.0, 0.0, 0.0)
     amount: Annotated[
         Fraction, Slider(0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="Mix with the input; link a mask here.")

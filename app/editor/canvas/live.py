@@ -71,7 +71,7 @@ class LiveFields:
         palette = make_node_palette(self.context.palette.name)
         if self.fields is None or self.fields.palette is not palette:
             self.fields = Fields(palette)
-        self.fields.places = self.context.places
+        self.fields.places, self.fields.store = self.context.places, self.context.store
         self.fields.begin(imgui.is_mouse_down(imgui.MouseButton_.left))
         self._dragged = self.fields.dragging
 

@@ -14,14 +14,17 @@ from ..theme.style import u32
 from ..toolkit.buttons import quiet_button
 from ..toolkit.fields import background
 from ..toolkit.places import Rect, place
-from ..toolkit.words import draw_dim, write
+from ..toolkit.words import draw_dim, tip, write
+from .balance import COOLEST, HOTTEST, find_temperature, set_temperature
 from .colors import RGBA, brighten, from_display, from_hexadecimal, hexadecimal, intensity, swatch, to_display
 from .fields import Edit, Fields
 from .number_field import NO_VALUE, number_field, row_of_numbers
+from .swatches import draw_swatch, draw_swatches, luma, measure_swatches
 from .text_field import text_field
 
 _LIGHT = Value("light", "color", (0.0,) * 4, 4, low=0.0, high=1.0)
 _STOPS = Value("stops", "float", 0.0, low=0.0, high=8.0, minimum=0.0, maximum=16.0, unit="EV")
+_KELVIN = Value("kelvin", "float", 6504.0, low=2000.0, high=12000.0, minimum=COOLEST, maximum=HOTTEST, unit="K")
 _TEXT = Value("hex", "text", "")
 _NAMES = ("R", "G", "B", "A")
 
@@ -68,7 +71,7 @@ def color_field(
         color_edit = row_of_numbers(
             fields, id, color, _LIGHT, width - side - gap, _NAMES if alpha else _NAMES[:3], mixed
         )
-    imgui.set_next_window_pos(_place_picker(rect), imgui.Cond_.appearing)
+    imgui.set_next_window_pos(_place_picker(fields, rect), imgui.Cond_.appearing)
     if imgui.begin_popup(f"picker {id}"):
         color_edit = color_picker(fields, f"{id} picker", color, eyedropper, alpha) or color_edit
         imgui.end_popup()
@@ -76,13 +79,17 @@ def color_field(
 
 
 def color_picker(fields: Fields, id: str, color: RGBA, eyedropper: bool = True, alpha: bool = True) -> Edit | None:
-    """Draw the picker: wheel, intensity, linear numbers, hexadecimal digits, copy, paste and eyedropper."""
+    """Draw the picker: wheel, intensity, numbers, temperature, hexadecimal digits, eyedropper and swatches."""
     width, side = imgui.get_font_size() * WIDTH, imgui.get_font_size() * 5.5
     owner, stops = id.removesuffix(" picker"), fields.stops
 
     def from_stops(edit: Edit) -> Edit | None:
         number = edit.value
         return replace(edit, value=brighten(color, number - stops)) if isinstance(number, int | float) else None
+
+    def from_kelvin(edit: Edit) -> Edit | None:
+        number = edit.value
+        return replace(edit, value=set_temperature(color, number)) if isinstance(number, int | float) else None
 
     def from_hex(edit: Edit) -> Edit | None:
         return _read_color(str(edit.value), color)
@@ -96,36 +103,18 @@ def color_picker(fields: Fields, id: str, color: RGBA, eyedropper: bool = True, 
         color_edit = from_stops(edit)
         fields.stops = float(edit.value) if isinstance(edit.value, int | float) else stops
     numbers = row_of_numbers(fields, f"{id} light", color, _LIGHT, width, _NAMES if alpha else _NAMES[:3])
+    _draw_label(fields, "Temperature", side)
+    tip("The color of light by its temperature: candle 1850 K, bulb 2850, noon 5500, shade 8000. It stays as bright.")
+    fields.part(f"{id} kelvin", owner, from_kelvin)
+    warmth = number_field(fields, f"{id} kelvin", find_temperature(color), _KELVIN, width - side, plain=True)
     _draw_label(fields, "sRGB hex", side)
     room = width - side - (3 if eyedropper else 2) * (imgui.get_frame_height() + imgui.get_style().item_inner_spacing.x)
     text = text_field(fields, f"{id} hex", hexadecimal(color), _TEXT, room)
-    fresh = numbers or (from_hex(text) if text else None) or _draw_buttons(fields, id, color, eyedropper, alpha)
+    fresh = numbers or (from_kelvin(warmth) if warmth else None) or (from_hex(text) if text else None)
+    fresh = fresh or _draw_buttons(fields, id, color, eyedropper, alpha) or draw_swatches(fields, id, color, width, alpha)
     if fresh:
         fields.stops = intensity(rgba(fresh.value))
     return fresh or color_edit
-
-
-def draw_swatch(fields: Fields, rect: Rect, color: RGBA, hovered: bool = False) -> None:
-    """Draw a color as a display shows it: opaque at the left, over a checkerboard at the right."""
-    lines, palette = imgui.get_window_draw_list(), fields.palette
-    rounding = imgui.get_style().frame_rounding
-    opaque, alpha = u32(swatch(color)), min(max(color[3], 0.0), 1.0)
-    lines.add_rect_filled(rect[:2], rect[2:], opaque, rounding)
-    if alpha < 1.0:
-        middle = (rect[0] + rect[2]) * 0.5
-        cell = (rect[3] - rect[1]) / 3.0
-        lines.push_clip_rect((middle, rect[1]), rect[2:], True)
-        lines.add_rect_filled(rect[:2], rect[2:], u32(palette.raised), rounding)
-        for row in range(3):
-            for column in range(int((rect[2] - middle) / cell) + 1):
-                if (row + column) % 2:
-                    x, y = middle + column * cell, rect[1] + row * cell
-                    lines.add_rect_filled((x, y), (x + cell, y + cell), u32(palette.dim))
-        lines.add_rect_filled(rect[:2], rect[2:], u32(swatch(color), alpha), rounding)
-        lines.pop_clip_rect()
-    if max(color[:3]) > 1.0:
-        _draw_bright_corner(fields, rect, color)
-    lines.add_rect(rect[:2], rect[2:], u32(palette.accent if hovered else palette.border), rounding)
 
 
 def _draw_wheel(fields: Fields, id: str, color: RGBA, width: float, alpha: bool) -> Edit | None:
@@ -194,11 +183,12 @@ def _draw_label(fields: Fields, text: str, side: float) -> None:
     imgui.same_line(left + side)
 
 
-def _place_picker(rect: Rect) -> tuple[float, float]:
+def _place_picker(fields: Fields, rect: Rect) -> tuple[float, float]:
     """The position of the picker: below the swatch, moved so that all of it is visible."""
     view, pad = imgui.get_main_viewport(), imgui.get_style().window_padding
     width = imgui.get_font_size() * WIDTH + 2 * pad.x
-    height = imgui.get_font_size() * (WIDTH - 1.5) + 4 * imgui.get_frame_height_with_spacing() + 2 * pad.y
+    height = imgui.get_font_size() * (WIDTH - 1.5) + 5 * imgui.get_frame_height_with_spacing() + 2 * pad.y
+    height += measure_swatches(fields, imgui.get_font_size() * WIDTH)
     x = max(min(rect[0], view.pos.x + view.size.x - width), view.pos.x)
     return x, max(min(rect[3], view.pos.y + view.size.y - height), view.pos.y)
 
@@ -214,21 +204,9 @@ def _draw_short(fields: Fields, rect: Rect, side: float, color: RGBA | RGB, mixe
 
 def _draw_name(fields: Fields, rect: Rect, color: RGBA, label: str) -> None:
     pad = imgui.get_style().frame_padding.x
-    below, palette = _luma(swatch(color)), fields.palette
-    ink = max((palette.text, palette.panel), key=lambda ink: abs(_luma(ink) - below))
+    below, palette = luma(swatch(color)), fields.palette
+    ink = max((palette.text, palette.panel), key=lambda ink: abs(luma(ink) - below))
     write((rect[0] + pad, rect[1], rect[2] - pad, rect[3]), label, ink)
-
-
-def _luma(color: RGB) -> float:
-    return 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2]
-
-
-def _draw_bright_corner(fields: Fields, rect: Rect, color: RGBA) -> None:
-    """Draw a marked corner: the color is brighter than the display can show."""
-    size = (rect[3] - rect[1]) * 0.35
-    imgui.get_window_draw_list().add_triangle_filled(
-        (rect[0], rect[1]), (rect[0] + size, rect[1]), (rect[0], rect[1] + size), u32(fields.palette.accent)
-    )
 
 
 def rgba(value: Plain) -> RGBA:

@@ -13,6 +13,7 @@ from ..theme.palette import Palette
 from .numbers import Drag, parse_number
 
 if TYPE_CHECKING:
+    from ...authoring.preferences import PreferenceStore
     from ..toolkit.places import Rect
 
 
@@ -71,6 +72,8 @@ class Fields:
     """The state of the fields of one panel: at most one is dragged and at most one is typed in."""
 
     palette: Palette
+    store: PreferenceStore | None = None
+    """The preferences, with the swatches of the user."""
     places: dict[str, Rect] = field(default_factory=dict[str, "Rect"])
     """The places of widgets, shared with the window."""
     typing: Typing | None = None

@@ -36,6 +36,7 @@ class Inspector:
         """Draw into the current window."""
         fields = self._fields
         fields.palette, fields.places, fields.items = self._context.palette, self._context.places, self._context.items
+        fields.store = self._context.interface.store
         self._values.begin()
         dragged = fields.dragging
         fields.begin(imgui.is_mouse_down(imgui.MouseButton_.left))

@@ -70,6 +70,7 @@ class NodeView:
         if isinstance(item, Node) and render_path(item):
             self._renders.draw(rows, id, item)
         else:
+            self._values.draw_wheels(rows, id, face.values.values())
             for name, declaration in face.values.items():
                 if not declaration.folded:
                     self._values.draw(rows, (Port(id, name),), declaration)

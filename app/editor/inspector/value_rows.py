@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING
@@ -40,6 +40,7 @@ from .color_rows import space_field
 from .file_field import FileField
 from .item_rows import ItemRows
 from .keying import WIDTH, Keying, spoken, value_now
+from .wheel_rows import draw_wheels
 
 if TYPE_CHECKING:
     from .context import InspectorContext
@@ -107,6 +108,14 @@ class ValueRows:
         if imgui.begin_popup(f"{_MENU} {key}"):
             self._menu(rows, ports, declaration, value, source, control)
             imgui.end_popup()
+
+    def draw_wheels(self, rows: Rows, id: str, declarations: Iterable[Value]) -> None:
+        """Draw the wheels of a node that balances colors; nothing for others."""
+
+        def take(port: Port, declaration: Value, edit: Edit) -> None:
+            self._take(rows, (port,), declaration, edit)
+
+        draw_wheels(rows, self.fields, id, declarations, take)
 
     def _draw_field(
         self,
