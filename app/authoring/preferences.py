@@ -57,9 +57,8 @@ class Preferences:
     that differ from it, by action; "" stands for none.
 
     `recent` has the newest first. `folders` are those used last, by purpose. `autosave` is in seconds,
-    `memory_budget` in MiB. `isf_folders` hold shaders that can be added, `preset_folders` presets. `swatches` are colors that the
-    user keeps. `extra` keeps what
-    another version of Halation wrote.
+    `memory_budget` in MiB. `isf_folders` hold shaders that can be added, `preset_folders` presets. `swatches` are
+    colors that the user keeps. `extra` is what another version of Halation wrote.
     """
 
     theme: Literal["dark", "light", "contrast"] = "dark"

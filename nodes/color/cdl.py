@@ -24,7 +24,12 @@ class Cdl(Pointwise):
     ] = "no clamp"
     slope: Annotated[RGBA, Wheel(0.5), Doc("Factor on the light, channel by channel.")] = (1.0, 1.0, 1.0, 1.0)
     offset: Annotated[RGBA, Wheel(0.2), Doc("Light added after the slope.")] = (0.0, 0.0, 0.0, 0.0)
-    power: Annotated[RGBA, Wheel(0.5), Doc("Above 1 darkens the midtones, below 1 brightens them.")] = (1.0, 1.0, 1.0, 1.0)
+    power: Annotated[RGBA, Wheel(0.5), Doc("Above 1 darkens the midtones, below 1 brightens them.")] = (
+        1.0,
+        1.0,
+        1.0,
+        1.0,
+    )
     saturation: Annotated[
         float,
         Slider(0.0, 2.0, unit="ratio", minimum=0.0, doc="0 is black and white, 1 unchanged, 2 twice as far from gray."),

@@ -10,7 +10,6 @@ from imgui_bundle import imgui
 
 from ...errors import UsageError
 from ..theme.palette import RGB
-from ..theme.style import u32
 from ..toolkit.buttons import quiet_button
 from ..toolkit.fields import background
 from ..toolkit.places import Rect, place
@@ -111,7 +110,9 @@ def color_picker(fields: Fields, id: str, color: RGBA, eyedropper: bool = True, 
     room = width - side - (3 if eyedropper else 2) * (imgui.get_frame_height() + imgui.get_style().item_inner_spacing.x)
     text = text_field(fields, f"{id} hex", hexadecimal(color), _TEXT, room)
     fresh = numbers or (from_kelvin(warmth) if warmth else None) or (from_hex(text) if text else None)
-    fresh = fresh or _draw_buttons(fields, id, color, eyedropper, alpha) or draw_swatches(fields, id, color, width, alpha)
+    fresh = (
+        fresh or _draw_buttons(fields, id, color, eyedropper, alpha) or draw_swatches(fields, id, color, width, alpha)
+    )
     if fresh:
         fields.stops = intensity(rgba(fresh.value))
     return fresh or color_edit

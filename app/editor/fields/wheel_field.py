@@ -65,9 +65,7 @@ def wheel_field(fields: Fields, owner: str, color: RGBA, declaration: Value, wid
     return edit or (from_level(typed) if typed else None)
 
 
-def _drag(
-    fields: Fields, id: str, color: RGBA, reach: float, width: float, hovered: bool, active: bool
-) -> Edit | None:
+def _drag(fields: Fields, id: str, color: RGBA, reach: float, width: float, hovered: bool, active: bool) -> Edit | None:
     """The color during a drag of its point, or the old one if Escape cancels the drag."""
     level, x, y = split_balance(color)
     if hovered and imgui.is_mouse_double_clicked(imgui.MouseButton_.left):
