@@ -178,11 +178,12 @@ class Canvas:
     _pointer: Point = (0.0, 0.0)
 
     def _fit(self, scene: CanvasScene, size: Point) -> None:
-        """Fit the view to the requested elements. The fit is repeated when the panel is resized or when first pictures
-        make nodes larger, until the user moves the view or opens another graph."""
+        """Fit the view to the requested elements, and again when the panel is resized or pictures make nodes larger,
+        until the user moves the view or opens another graph; never below a hand that drags."""
         view, last = self._context.canvas, self._last_fit
         if view.pending_fit is None:
-            untouched = last.view == (view.center, view.zoom) and last.graph is self._context.session.root
+            is_idle, is_same = isinstance(self._mouse.gesture, Idle), last.graph is self._context.session.root
+            untouched = last.view == (view.center, view.zoom) and is_idle and is_same
             if not untouched or (last.size == size and last.scene is scene):
                 return
             keys = last.keys
@@ -396,5 +397,4 @@ def _describe_pin(context: CanvasContext, port: Port, output: bool) -> str:
     socket = context.log.attempt(lambda: graph.source(port) if output else graph.target(port))
     if socket is None:
         return str(port)
-    kind = getattr(socket, "kind", None)
-    return f"{port}  ({kind or 'value'})" + (f"\n{socket.doc}" if socket.doc else "")
+    return f"{port}  ({getattr(socket, 'kind', None) or 'value'})" + (f"\n{socket.doc}" if socket.doc else "")

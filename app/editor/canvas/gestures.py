@@ -87,6 +87,8 @@ class LinkGesture:
     detached: Port | None = None
     targets: frozenset[Port] = frozenset()
     """Pins of the other side that it fits."""
+    start: Point = (0.0, 0.0)
+    """Where the mouse button was pressed: the pin itself may move when a node unfolds below the link."""
 
 
 Gesture = Idle | PanGesture | Band | MoveGesture | ResizeGesture | CutGesture | LinkGesture

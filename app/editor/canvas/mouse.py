@@ -174,7 +174,7 @@ class CanvasMouse:
         targets = frame.context.log.attempt(
             lambda: find_fitting_pins(graph, scene, start, is_output), frozenset[Port]()
         )
-        self.gesture = LinkGesture(start, is_output, detached, targets or frozenset())
+        self.gesture = LinkGesture(start, is_output, detached, targets or frozenset(), frame.pointer)
 
     def _double_click(self, frame: CanvasFrame, hit: Hit) -> None:
         context, session = frame.context, frame.context.session
@@ -310,7 +310,7 @@ class CanvasMouse:
                 context.log.attempt(lambda: session.apply(ConnectNodes(source, target)))
             else:
                 context.log.attempt(lambda: session.apply(Connect(source, target)))
-        elif not frame.is_far(self._find_link_start(frame, link)):
+        elif not frame.is_far(link.start):
             if link.output and link.detached is None:
                 context.log.attempt(lambda: session.views.show(link.port))
         elif find_refused_pin(frame.scene, link, frame.pointer, frame.reach) is None and not frame.scene.find_node(
@@ -330,13 +330,6 @@ class CanvasMouse:
         reach = _SNAP_REACH * frame.scale / frame.to.scale
         on_node = math.dist(frame.pointer, pin) > reach
         return (on_node or source.socket == target.socket) and not imgui.get_io().key_ctrl
-
-    def _find_link_start(self, frame: CanvasFrame, link: LinkGesture) -> Point:
-        end = link.detached or link.port
-        for port, box, pin in frame.scene.list_pins(link.output and link.detached is None):
-            if port == end:
-                return box.x + pin.x, box.y + pin.y
-        return frame.pointer
 
     # --- what is seen of it ------------------------------------------------------------------------------------------
 

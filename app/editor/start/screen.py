@@ -11,7 +11,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...authoring.recovery.recovery import RecoveredWork
 from ..theme.style import ui_scale, vec4
-from ..toolkit.buttons import main_button, quiet_button
+from ..toolkit.buttons import entry, main_button, quiet_button
 from ..toolkit.dialogs import backdrop, dialog, escape_pressed
 from ..toolkit.keys import chord, display_shortcut
 from ..toolkit.places import record
@@ -95,8 +95,22 @@ class StartScreen:
             self._context.actions.run("file.open_render")
         record(self._context, "start open render")
         tip("Start a graph that reads the layers of a render, or a picture or sequence")
+        self._draw_tutorials()
         if not self._context.store.current.hint_seen:
             self._draw_hint()
+
+    def _draw_tutorials(self) -> None:
+        """Draw the tutorials, which run in the editor."""
+        width = imgui.get_content_region_avail().x
+        if imgui.button(f"{icons.ICON_FA_GRADUATION_CAP}  Tutorials", ImVec2(width, 0)):
+            imgui.open_popup("tutorials")
+        record(self._context, "start tutorials")
+        tip("Five minutes each, in the editor")
+        if imgui.begin_popup("tutorials"):
+            for action in self._context.actions.all:
+                if action.id.startswith("tutorial."):
+                    entry(self._context, action)
+            imgui.end_popup()
 
     def _draw_hint(self) -> None:
         imgui.dummy(ImVec2(0, 4 * ui_scale()))

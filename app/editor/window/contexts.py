@@ -25,6 +25,8 @@ from ..renders.context import RendersContext
 from ..start.context import StartContext
 from ..timeline.actions import PLAYBACK
 from ..timeline.context import TimelineContext
+from ..tutorials.actions import TUTORIALS
+from ..tutorials.context import TutorialContext
 from ..viewer.actions import VIEWER
 from ..viewer.context import ViewerContext
 from ..viewer.handle_actions import HANDLES
@@ -56,6 +58,7 @@ class Contexts:
     renders: RendersContext
     start: StartContext
     timeline: TimelineContext
+    tutorials: TutorialContext
     viewer: ViewerContext
 
 
@@ -83,6 +86,7 @@ def compose_contexts(editor: Editor) -> Contexts:
         RendersContext.compose(editor, editor.timeline, flipbooks),
         StartContext.compose(editor, documents),
         TimelineContext.compose(editor, editor.timeline),
+        TutorialContext.compose(editor, documents),
         ViewerContext.compose(editor, editor.viewer, editor.timeline, editor.canvas, editor.code),
     )
     bind_actions(editor, contexts)
@@ -101,4 +105,5 @@ def bind_actions(editor: Editor, contexts: Contexts) -> None:
     bind(HANDLES, contexts.viewer)
     bind(PLAYBACK, contexts.timeline)
     bind(ANIMATION, contexts.curves)
+    bind(TUTORIALS, contexts.tutorials)
     bind(VIEW, ViewSettingsContext.compose(editor))

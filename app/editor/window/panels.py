@@ -24,6 +24,7 @@ from ..problems.panel import ProblemsPanel
 from ..renders.panel import RendersPanel
 from ..shared.window_commands import PanelTitle
 from ..start.screen import StartScreen
+from ..tutorials.coach import Coach
 from ..viewer.scopes_panel import ScopesPanel
 from ..viewer.viewer import Viewer
 from .contexts import Contexts
@@ -59,6 +60,7 @@ DOCKED = (
 )
 
 OVERLAYS: tuple[tuple[str, Callable[[Contexts], Panel]], ...] = (
+    ("Tutorial", lambda contexts: Coach(contexts.tutorials)),
     ("Start", lambda contexts: StartScreen(contexts.start)),
     ("Shortcuts", lambda contexts: CheatSheet(contexts.dialogs)),
     ("Preferences", lambda contexts: PreferencesDialog(contexts.preferences)),

@@ -197,6 +197,7 @@ class Window:
         if self._front_again and self.frames >= self._front_at:
             self._fronted.add(self._front_again[0])
             self._front_again = self._front_again[1:]
+        self._contexts.tutorials.progress.note_widgets(editor.places)
         editor.places.clear()
         if not any(map(imgui.is_mouse_down, (imgui.MouseButton_.left, imgui.MouseButton_.middle))):
             editor.interface.dragging = False

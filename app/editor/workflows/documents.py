@@ -107,12 +107,13 @@ class DocumentWorkflow:
         else:
             self.open_picture(path)
 
-    def open_picture(self, path: Path) -> None:
+    def open_picture(self, path: Path, then: Callable[[], object] = _do_nothing) -> None:
         """Open a picture in a new document that reads it, after asking about unsaved work."""
 
         def open_reader() -> None:
             self.session.files.open_pictures([path])
             self._show_document()
+            then()
 
         self._unless_unsaved(lambda: self.log.attempt(open_reader), "open")
 
@@ -134,12 +135,13 @@ class DocumentWorkflow:
 
         self._unless_unsaved(lambda: self.log.attempt(open_file), "open")
 
-    def open_preset(self, path: Path) -> None:
+    def open_preset(self, path: Path, then: Callable[[], object] = _do_nothing) -> None:
         """Open a preset as a new document, after asking about unsaved work."""
 
         def open_copy() -> None:
             self.session.files.open_copy(path)
             self._show_document()
+            then()
 
         self._unless_unsaved(lambda: self.log.attempt(open_copy), "open the preset")
 

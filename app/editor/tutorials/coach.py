@@ -1,0 +1,128 @@
+"""Draws the current step of a tutorial: a frame around its widget, and a card beside it."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from imgui_bundle import ImVec2, imgui
+from imgui_bundle import icons_fontawesome_6 as icons
+
+from ..theme.style import u32, ui_scale
+from ..toolkit.buttons import quiet_button
+from ..toolkit.keys import display_shortcut
+from ..toolkit.places import Rect
+from ..toolkit.words import SMALL, draw_dim, draw_wrapped, font
+from .lesson import Moment
+
+if TYPE_CHECKING:
+    from .context import TutorialContext
+    from .lesson import Lesson, Step
+
+_WIDTH, _GAP, _MARGIN = 320.0, 14.0, 10.0
+_PADDING = 14.0, 10.0
+
+_FLAGS = (
+    int(imgui.WindowFlags_.no_decoration)
+    | int(imgui.WindowFlags_.no_move)
+    | int(imgui.WindowFlags_.no_saved_settings)
+    | int(imgui.WindowFlags_.no_docking)
+    | int(imgui.WindowFlags_.no_focus_on_appearing)
+)
+
+
+class Coach:
+    """The open tutorial. It takes no keys of the panels: the user works in the editor while it looks on."""
+
+    def __init__(self, context: TutorialContext) -> None:
+        self._context = context
+
+    def draw(self) -> None:
+        """Draw the step, and go on when it is done."""
+        progress = self._context.progress
+        if progress.lesson is None or "start" in self._context.dialogs.open:
+            return
+        now = Moment.read(self._context.session, frozenset(progress.widgets))
+        step = progress.lesson.steps[progress.index]
+        if progress.beginning is None:
+            progress.beginning = now
+        elif step.is_done is not None and step.is_done(progress.beginning, now):
+            if not self._context.interface.dragging:  # a drag ends first
+                progress.go(1)
+            return
+        rect = progress.widgets.get(step.widget)
+        if rect is not None:
+            self._draw_frame(rect)
+        self._draw_card(progress.lesson, step, rect)
+
+    def _draw_frame(self, rect: Rect) -> None:
+        """Draw a frame around a widget; it is wider than the focus ring, so that the two differ."""
+        lines, scale = imgui.get_foreground_draw_list(), ui_scale()
+        out, accent = 5.0 * scale, self._context.palette.accent
+        low, high = (rect[0] - out, rect[1] - out), (rect[2] + out, rect[3] + out)
+        lines.add_rect(low, high, u32(accent, 0.3), 8.0 * scale, 7.0 * scale)
+        lines.add_rect(low, high, u32(accent), 8.0 * scale, 2.0 * scale)
+
+    def _draw_card(self, lesson: Lesson, step: Step, rect: Rect | None) -> None:
+        scale, progress = ui_scale(), self._context.progress
+        sentence = self._fill_in_keys(step.sentence)
+        inner = (_WIDTH - 2 * _PADDING[0]) * scale
+        high = imgui.calc_text_size(sentence, False, inner).y + 2 * _PADDING[1] * scale + imgui.get_frame_height()
+        high += 1.2 * SMALL * scale + 3 * imgui.get_style().item_spacing.y + 2.0 * scale
+        imgui.set_next_window_pos(place_card(rect, (_WIDTH * scale, high), _find_area(), scale))
+        imgui.set_next_window_size(ImVec2(_WIDTH * scale, high))
+        imgui.push_style_color(imgui.Col_.border, u32(self._context.palette.accent))
+        imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(_PADDING[0] * scale, _PADDING[1] * scale))
+        imgui.push_style_var(imgui.StyleVar_.window_rounding, 8.0 * scale)
+        imgui.begin("##tutorial", None, _FLAGS)
+        if not self._context.dialogs.any and not imgui.is_popup_open("", int(imgui.PopupFlags_.any_popup)):
+            imgui.internal.bring_window_to_display_front(imgui.internal.get_current_window())
+        with font(self._context, "text", SMALL):
+            draw_dim(self._context, f"{lesson.title}: {progress.index + 1} of {len(lesson.steps)}")
+        draw_wrapped(self._context.palette.text, sentence)
+        imgui.dummy(ImVec2(0.0, 2.0 * scale))
+        is_last = progress.index == len(lesson.steps) - 1
+        if progress.index and quiet_button(self._context, f"{icons.ICON_FA_ARROW_LEFT}  Back", "tutorial back", ""):
+            progress.go(-1)
+        if progress.index:
+            imgui.same_line()
+        label = "Finish" if is_last else f"{icons.ICON_FA_ARROW_RIGHT}  {'Next' if step.is_done is None else 'Skip'}"
+        if quiet_button(self._context, label, "tutorial next", "", lit=step.is_done is None):
+            progress.go(1)
+        if not is_last:
+            imgui.same_line()
+            if quiet_button(self._context, f"{icons.ICON_FA_XMARK}  End", "tutorial end", "Close the tutorial"):
+                progress.begin(None)
+        corner = imgui.get_window_pos()
+        self._context.places["tutorial"] = (corner.x, corner.y, corner.x + _WIDTH * scale, corner.y + high)
+        imgui.end()
+        imgui.pop_style_var(2)
+        imgui.pop_style_color()
+
+    def _fill_in_keys(self, sentence: str) -> str:
+        """The sentence with the current shortcuts of the actions that it names in braces."""
+        actions = self._context.actions
+        return re.sub(r"\{([\w.]+)\}", lambda match: display_shortcut(actions.shortcut(match[1])), sentence)
+
+
+def place_card(rect: Rect | None, size: tuple[float, float], area: Rect, scale: float) -> tuple[float, float]:
+    """Where the card goes: beside its widget, so that it hides nothing of it; into a widget as large as a panel.
+
+    Below comes first, as a reader looks there next; then above, at the right and at the left.
+    """
+    width, height = size
+    gap, margin = _GAP * scale, _MARGIN * scale
+    low, high = (area[0] + margin, area[1] + margin), (area[2] - margin - width, area[3] - margin - height)
+    if rect is None:
+        return high
+    x, y = min(max(rect[0], low[0]), high[0]), min(max(rect[1], low[1]), high[1])
+    corners = ((x, rect[3] + gap), (x, rect[1] - gap - height), (rect[2] + gap, y), (rect[0] - gap - width, y))
+    for corner in corners:
+        if low[0] <= corner[0] <= high[0] and low[1] <= corner[1] <= high[1]:
+            return corner
+    return min(max(rect[2] - width - margin, low[0]), high[0]), y + margin
+
+
+def _find_area() -> Rect:
+    view = imgui.get_main_viewport()
+    return view.work_pos.x, view.work_pos.y, view.work_pos.x + view.work_size.x, view.work_pos.y + view.work_size.y

@@ -1,0 +1,63 @@
+"""What the tutorials use."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from ..toolkit.context import PanelContext
+from ..toolkit.places import Rect
+from .lesson import Lesson, Moment
+
+if TYPE_CHECKING:
+    from ...authoring.session import Session
+    from ..shared.action import Actions
+    from ..shared.dialogs import Dialogs
+    from ..toolkit.services import Services
+    from ..workflows.documents import DocumentWorkflow
+
+
+@dataclass
+class LessonProgress:
+    """The lesson that is open, and how far the user is."""
+
+    lesson: Lesson | None = None
+    index: int = 0
+    beginning: Moment | None = None
+    """The moment in which the step began; None until it is drawn."""
+    widgets: dict[str, Rect] = field(default_factory=dict[str, Rect])
+    """Where widgets were in the last whole frame, while a lesson is open."""
+
+    def note_widgets(self, places: dict[str, Rect]) -> None:
+        """Keep the places of a frame: what lies on top of the panels is drawn before them."""
+        if self.lesson is not None:
+            self.widgets = dict(places)
+
+    def begin(self, lesson: Lesson | None) -> None:
+        """Open a lesson at its first step; None closes the open one."""
+        self.lesson, self.index, self.beginning = lesson, 0, None
+
+    def go(self, by: int) -> None:
+        """Go to another step; beyond the last one the lesson is over."""
+        assert self.lesson is not None
+        index = max(self.index + by, 0)
+        if index < len(self.lesson.steps):
+            self.index, self.beginning = index, None
+        else:
+            self.begin(None)
+
+
+@dataclass(frozen=True)
+class TutorialContext(PanelContext):
+    """The collaborators of the tutorials."""
+
+    session: Session
+    dialogs: Dialogs
+    actions: Actions
+    documents: DocumentWorkflow
+    progress: LessonProgress = field(default_factory=LessonProgress)
+
+    @classmethod
+    def compose(cls, services: Services, documents: DocumentWorkflow) -> TutorialContext:
+        """Pick what the tutorials use."""
+        return cls(services.interface, services.log, services.session, services.dialogs, services.actions, documents)

@@ -1,0 +1,190 @@
+"""Every tutorial, done in the editor as its sentences say, by mouse and keyboard."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from gui_driver import Ui
+from halation import presets
+from halation.editor.tutorials.coach import place_card
+from halation.editor.tutorials.lessons import LESSONS
+
+Act = Callable[[Ui], object]
+
+
+def open_lesson(ui: Ui, id: str) -> None:
+    ui.window._contexts.tutorials.actions.run(f"tutorial.{id}")
+    ui.settled()
+
+
+def add(name: str) -> Act:
+    def act(ui: Ui) -> None:
+        ui.move("Graph", (0.5, 0.93))
+        ui.keys("Tab")
+        ui.type(name)
+
+    return act
+
+
+def click(place: str) -> Act:
+    return lambda ui: (ui.reveal(place) if place.startswith("field ") else None, ui.click(place))
+
+
+def open(place: str) -> Act:
+    return lambda ui: ui.double_click(place)
+
+
+def drag(place: str, across: float, down: float = 0.0) -> Act:
+    def act(ui: Ui) -> None:
+        if place.startswith(("field ", "wheel ")):
+            ui.reveal(place)
+        x, y = ui.at(place)
+        ui.drag(place, (x + across, y + down))
+
+    return act
+
+
+def link(start: str, end: str) -> Act:
+    return lambda ui: ui.drag(start, end)
+
+
+def press(keys: str) -> Act:
+    def act(ui: Ui) -> None:
+        ui.move("Graph", (0.5, 0.93))
+        ui.keys(keys)
+
+    return act
+
+
+def type_into(place: str, text: str) -> Act:
+    return lambda ui: (ui.click(place), ui.type(text))
+
+
+def both(*acts: Act) -> Act:
+    return lambda ui: [act(ui) for act in acts]
+
+
+def change_code(ui: Ui) -> None:
+    ui.click("code text", fraction=(0.5, 0.9))
+    ui.keys("Ctrl+Home")
+    for key in ("End", "Enter"):
+        ui.keys(key)
+    ui.ctx.key_chars("// mine")
+    ui.settled()
+
+
+GO_ON = click("tutorial next")
+ACTS: dict[str, tuple[Act, ...]] = {
+    "first_look": (
+        click("title bloom"),
+        drag("field bloom.intensity", 40.0),
+        add("vignette"),
+        drag("handle vignette.center", 60.0, -30.0),
+        open("title bloom"),
+        open("title outputs.image"),
+        press("Ctrl+Z"),
+        GO_ON,
+    ),
+    "layers": (
+        click("title neon"),
+        click("pin out neon.depth"),
+        add("fog"),
+        open("title fog"),
+        both(click("title fog"), drag("field fog.density", 30.0)),
+        GO_ON,
+    ),
+    "masks": (
+        click("title neon"),
+        add("grade"),
+        drag("wheel grade.gain", 20.0, 10.0),
+        add("shape"),
+        both(press("Home"), link("pin out shape.mask", "pin in grade.mask")),
+        both(click("title shape"), drag("field shape.softness", 30.0)),
+        both(click("title grade"), click("field grade.invert_mask")),
+        GO_ON,
+    ),
+    "animation": (
+        type_into("field timeline last", "24"),
+        click("title bloom"),
+        click("diamond bloom.intensity"),
+        click("ruler 24"),
+        drag("field bloom.intensity", 40.0),
+        click("button time.play"),
+        both(press("Space"), lambda ui: ui.ctx.window_focus("//Animation")),
+        GO_ON,
+    ),
+    "own_glsl": (
+        click("title neon"),
+        add("code"),
+        open("title code"),
+        drag("field code.amount", 30.0),
+        change_code,
+        GO_ON,
+    ),
+}
+
+
+@pytest.mark.parametrize("lesson", LESSONS, ids=lambda lesson: lesson.id)
+def test_a_tutorial_goes_on_when_the_user_does_what_it_says(gui, lesson) -> None:
+    def body(ui: Ui) -> None:
+        open_lesson(ui, lesson.id)
+        ui.shot(f"tutorial_{lesson.id}.png")
+        ui.wait(5)
+        progress = ui.window._contexts.tutorials.progress
+        assert progress.lesson is lesson and len(ACTS[lesson.id]) == len(lesson.steps)
+        for index, act in enumerate(ACTS[lesson.id]):
+            assert progress.index == index, lesson.steps[index].sentence
+            ui.until(lambda: "tutorial" in ui.editor.places)
+            act(ui)
+            ui.until(lambda index=index: progress.lesson is None or progress.index > index, 20.0)
+            ui.wait(4)
+        assert progress.lesson is None and not [entry for entry in ui.editor.log.entries if entry.level == "error"]
+
+    gui(body, size=(1400, 900))
+
+
+@pytest.mark.parametrize("lesson", LESSONS, ids=lambda lesson: lesson.id)
+def test_a_step_is_about_a_widget_that_is_there(gui, lesson) -> None:
+    """The user can go through a lesson without doing anything, back and forth; the first widget can be seen."""
+
+    def body(ui: Ui) -> None:
+        open_lesson(ui, lesson.id)
+        assert lesson.steps[0].widget in ui.editor.places
+        progress = ui.window._contexts.tutorials.progress
+        ui.click("tutorial next")
+        ui.click("tutorial back")
+        assert progress.index == 0
+        ui.click("tutorial next")
+        ui.click("tutorial end")
+        assert progress.lesson is None and "tutorial" not in ui.editor.places
+
+    gui(body)
+
+
+PRESET = next(path for path in presets.paths() if path.stem == "soft_bloom")
+
+
+def test_unsaved_work_is_asked_for_and_a_refusal_opens_no_tutorial(gui) -> None:
+    def body(ui: Ui) -> None:
+        ui.settled()
+        add("blur")(ui)
+        ui.wait(3)
+        open_lesson(ui, "masks")
+        assert ui.editor.dialogs.question is not None
+        ui.keys("Escape")
+        ui.wait(3)
+        assert ui.window._contexts.tutorials.progress.lesson is None
+
+    gui(body, PRESET)
+
+
+@pytest.mark.parametrize("size", [(640.0, 400.0), (1920.0, 1080.0)])
+@pytest.mark.parametrize(
+    "rect", [None, (10.0, 10.0, 60.0, 30.0), (580.0, 360.0, 630.0, 390.0), (0.0, 0.0, 640.0, 400.0), (300, 5, 340, 390)]
+)
+def test_the_card_is_inside_the_window_and_beside_its_widget(size, rect) -> None:
+    x, y = place_card(rect, (320.0, 120.0), (0.0, 0.0, *size), 1.0)
+    assert x >= 0.0 and y >= 0.0 and x + 320.0 <= size[0] and y + 120.0 <= size[1]
+    if rect is not None and rect[2] - rect[0] < 100.0 and rect[3] - rect[1] < 100.0:
+        assert x >= rect[2] or x + 320.0 <= rect[0] or y >= rect[3] or y + 120.0 <= rect[1]
