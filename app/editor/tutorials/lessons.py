@@ -83,7 +83,8 @@ _LAYERS = Lesson(
             shows("neon", "depth"),
         ),
         Step(
-            "Press {node.add} over the graph. Type fog, then Enter. Its inputs are linked to the layers of the same name.",
+            "Press {node.add} over the graph. Type fog, then Enter. Its inputs are linked to the layers of the"
+            " same name.",
             "Graph",
             adds("fog"),
         ),
