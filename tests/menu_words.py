@@ -149,7 +149,7 @@ FUSION = {
     "ColorCurves": "curves",
     "ColorGain": "grade exposure",
     "Gamut": "color_space",
-    "HueCurves": "hue_saturation curves",
+    "HueCurves": "hue_curves",
     "WhiteBalance": "white_balance",
     "FileLUT": "lut_file",
     "SoftGlow": "bloom",

@@ -83,8 +83,8 @@ def _drag(fields: Fields, id: str, color: RGBA, reach: float, width: float, hove
         return None
     step = (_FINE if io.key_shift else _PACE) * reach / (width / 2.0)
     point = x + io.mouse_delta.x * step, y + io.mouse_delta.y * step
-    far = math.hypot(*point) / max(reach, math.hypot(x, y))  # a color beyond the rim may stay, but goes no farther
-    return Edit(join_balance(level, *(part / max(far, 1.0) for part in point), color[3]), fields.merge)
+    far = max(math.hypot(*point) / max(reach, math.hypot(x, y)), 1.0)  # what is beyond the rim may stay there
+    return Edit(join_balance(level, point[0] / far, point[1] / far, color[3]), fields.merge)
 
 
 def _draw(fields: Fields, rect: Rect, at: tuple[float, float], lit: bool) -> None:
