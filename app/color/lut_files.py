@@ -7,11 +7,14 @@ light. So a *shaper* precedes the table of linear light: a curve that is straigh
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from msgspec import Struct
 
+from ..resources.input_files import check_file
+from ..resources.sandbox import Sandbox
 from .management import load_ocio
 from .transforms import Array
 
@@ -107,11 +110,11 @@ def write_clf(table: ColorTable) -> bytes:
     return str(text).encode()
 
 
-def apply_table_file(path: str, colors: Array) -> Array:
+def apply_table_file(path: str | Path, colors: Array, sandbox: Sandbox) -> Array:
     """The colors [..., 3] behind a table in a file, which OpenColorIO reads and applies on the processor."""
     api = load_ocio()
     api.ClearAllCaches()
-    transform = api.FileTransform(path, interpolation=api.INTERP_TETRAHEDRAL)
+    transform = api.FileTransform(str(check_file(path, sandbox)), interpolation=api.INTERP_TETRAHEDRAL)
     processor = api.Config.CreateRaw().getProcessor(transform).getDefaultCPUProcessor()
     changed = np.ascontiguousarray(colors, np.float32).reshape(-1, 3).copy()
     processor.applyRGB(changed)

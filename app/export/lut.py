@@ -80,7 +80,7 @@ class _TableExport:
         assert self.order.output is not None
         write_bytes_atomically(self.order.output, write(self._bake()), sandbox=self.order.sandbox)
         path = str(self.order.output)
-        return self._report(lambda colors: apply_table_file(path, colors))
+        return self._report(lambda colors: apply_table_file(path, colors, self.order.sandbox))
 
     def export_strip(self) -> ExportReport:
         """Bake the table and write it as a picture."""

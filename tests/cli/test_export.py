@@ -126,8 +126,8 @@ def test_masks_files_and_alpha_are_refused(cli, graphs, shot, tmp_path: Path) ->
     assert "reads the file" in cli("export", graphs(nodes=other, links=links), *out).err
     flat = graphs(nodes={"fill": {"type": "constant"}}, links={"outputs.image": "fill.out"})
     assert "depends on no input" in cli("export", flat, *out).err
-    cut = {"key": {"type": "luma_key"}, "cut": {"type": "set_matte"}}
-    links = {"key.image": "light.out", "cut.image": "light.out", "cut.matte": "key.out", "outputs.image": "cut.out"}
+    cut = {"key": {"type": "luma_key"}}
+    links = {"key.image": "light.out", "outputs.image": "key.out"}
     assert "holds no alpha" in cli("export", graphs(nodes=cut, links=links), *out).err
     assert not (tmp_path / "no.clf").exists()
 
