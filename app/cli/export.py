@@ -39,7 +39,9 @@ def export(
     kind: Annotated[
         str,
         typer.Option(
-            "--to", metavar="KIND", help="isf, cube, clf or png; by default what the ending of the file says."
+            "--to",
+            metavar="KIND",
+            help="isf, web, glsl, cube, clf or png; by default what the ending of the file says.",
         ),
     ] = "",
     output: Annotated[
@@ -67,7 +69,7 @@ def export(
 ) -> int:
     """Write a graph in the format of another program.
 
-    Writes shaders and tables of colors. Where a node cannot be part of the format, the command names it with the
+    Writes pages for browsers, shaders and tables of colors. Where a node cannot be part of the format, the command names it with the
     reason.
     """
     from ..errors import UsageError

@@ -37,6 +37,8 @@ KINDS: Mapping[str, ExportKind] = MappingProxyType(
         kind.name: kind
         for kind in (
             ExportKind("isf", ".fs", "one shader in the Interactive Shader Format", "isf", "export_shader", True),
+            ExportKind("web", ".html", "one page with the picture and a slider for each control", "web", "export_page"),
+            ExportKind("glsl", "", "a folder with passes of GLSL, and readers for them", "folder", "export_folder"),
             ExportKind("cube", ".cube", "a table of colors with a shaper, for grading programs", "lut", "export_cube"),
             ExportKind("clf", ".clf", "a table in the Common LUT Format (SMPTE ST 2136)", "lut", "export_clf"),
             ExportKind("png", ".png", "a table as a strip of squares, for game engines", "lut", "export_strip"),
@@ -56,6 +58,6 @@ def choose_kind(name: str, output: Path | None) -> ExportKind:
     if output is None:
         raise UsageError(f"say what to write with --to: {names}")
     for kind in KINDS.values():
-        if kind.ending == output.suffix.lower():
+        if kind.ending and kind.ending == output.suffix.lower():
             return kind
     raise UsageError(f"-o {output}: its ending does not say what to write: add --to {names.replace(', ', '|')}")

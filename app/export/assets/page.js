@@ -1,0 +1,332 @@
+// The page around a package: controls, the visitor's own picture, comparison, time, and saving.
+
+const $ = name => document.getElementById(name);
+
+const COVER = `#version 300 es
+void main() { gl_Position = vec4(vec2((gl_VertexID << 1) & 2, gl_VertexID & 2) * 2.0 - 1.0, 0.0, 1.0); }`;
+
+// Shows two pictures side by side, over black where they are transparent. Row 0 of a picture is at the top.
+const PRESENT = `#version 300 es
+precision highp float;
+uniform highp sampler2D t0;
+uniform highp sampler2D t1;
+uniform vec2 room;
+uniform float wipe;
+out vec4 color;
+void main() {
+    vec2 at = vec2(gl_FragCoord.x, room.y - gl_FragCoord.y) / room;
+    vec4 shown = at.x < wipe ? texture(t1, at) : texture(t0, at);
+    color = vec4(shown.rgb * shown.a, 1.0);
+}`;
+
+async function inflate(text, stride) {
+    const bytes = Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+    const planes = new Uint8Array(await new Response(stream).arrayBuffer());
+    if (!stride) return planes.buffer;
+    const whole = new Uint8Array(planes.length), count = planes.length / stride;
+    for (let k = 0; k < stride; ++k)
+        for (let at = 0; at < count; ++at) whole[at * stride + k] = planes[k * count + at];
+    return whole.buffer;
+}
+
+const encode = light => light <= 0.0031308 ? 12.92 * light : 1.055 * Math.pow(light, 1 / 2.4) - 0.055;
+const decode = code => code <= 0.04045 ? code / 12.92 : Math.pow((code + 0.055) / 1.055, 2.4);
+const hex = parts => "#" + parts.map(part =>
+    Math.round(255 * encode(Math.min(Math.max(part, 0), 1))).toString(16).padStart(2, "0")).join("");
+
+class Page {
+    constructor(content, blobs) {
+        this.content = content; this.blobs = blobs; this.package = content.document;
+        this.canvas = $("picture");
+        this.rest = Object.fromEntries(this.package.controls.flatMap(control =>
+            control.knobs.map(knob => [knob.name, knob.rest])));
+        this.knobs = {...this.rest};
+        this.frame = this.package.frames[0];
+        this.isFirst = true; this.isDirty = true; this.isPlaying = false; this.wipe = 0; this.own = new Map();
+        this.buildControls(); this.buildSources(); this.buildTime();
+        this.canvas.addEventListener("webglcontextlost", event => { event.preventDefault(); this.reader = null; });
+        this.canvas.addEventListener("webglcontextrestored", () => this.start());
+        this.start();
+        requestAnimationFrame(time => this.tick(time));
+    }
+
+    start() {
+        const gl = this.canvas.getContext("webgl2", {alpha: false, antialias: false, preserveDrawingBuffer: true});
+        if (!gl) throw new Error("this browser has no WebGL 2");
+        this.gl = gl;
+        this.reader = new PackageReader(gl, this.package, this.content.programs, number => this.blobs[number]);
+        this.content.programs.cover = COVER;
+        for (const [number, pixels] of this.own) this.reader.replaceSource(number, pixels);
+        const {surfaces, output} = this.package.plans[0][0];
+        [this.canvas.width, this.canvas.height] = this.size = surfaces[output].size;
+        this.canvas.style.setProperty("--aspect", this.size[0] / this.size[1]);
+        this.restart();
+    }
+
+    restart() { this.frame = this.package.frames[0]; this.isFirst = true; this.isDirty = true; }
+
+    // --- drawing -------------------------------------------------------------------------------------------------
+
+    tick(time) {
+        const [first, last] = this.package.frames;
+        try {
+            if (this.isPlaying && time - (this.shownAt || 0) >= 1000 / this.package.rate) {
+                this.shownAt = time;
+                if (this.frame >= last) this.restart(); else ++this.frame;
+                $("frame").value = this.frame;
+                this.isDirty = true;
+            }
+            if (this.isDirty && this.reader && !this.gl.isContextLost()) this.show();
+        } catch (fault) { fail(fault); }
+        requestAnimationFrame(next => this.tick(next));
+    }
+
+    // Renders the picture of this frame; of a graph that remembers, all frames since the last one.
+    show() {
+        this.isDirty = false;
+        const reader = this.reader, first = this.package.frames[0];
+        if (reader.remembers) {
+            if (this.isFirst || this.frame < this.rendered) this.rendered = first - 1;
+            if (this.frame === this.rendered) this.rendered = first - 1;
+            for (let at = this.rendered + 1; at <= this.frame; ++at)
+                this.picture = reader.render(this.knobs, at, at === first);
+            this.rendered = this.frame;
+        } else this.picture = reader.render(this.knobs, this.frame, true);
+        this.isFirst = false;
+        this.shown = this.view(this.picture, "view");
+        this.present();
+        if (!this.firstPictureAt) {
+            this.firstPictureAt = performance.now();
+            document.body.classList.add("ready");
+            $("frame").value = this.frame;
+        }
+    }
+
+    // The picture as codes of a screen.
+    view(picture, name) {
+        const gl = this.gl, reader = this.reader, display = this.package.display;
+        const target = reader.remember(`${name} ${picture.size}`, () => {
+            const texture = gl.createTexture();
+            gl.bindTexture(gl.TEXTURE_2D, texture);
+            gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, ...picture.size, 0, gl.RGBA, gl.UNSIGNED_BYTE, null);
+            reader.setSampling(gl.TEXTURE_2D, true);
+            return Object.assign(texture, {size: picture.size});
+        });
+        const linked = reader.program(display.program);
+        gl.useProgram(linked.program);
+        reader.bindTextures(linked, [picture], display.tables);
+        reader.draw(linked, [target]);
+        return target;
+    }
+
+    present() {
+        const gl = this.gl, reader = this.reader;
+        let before = this.shown;
+        if (this.wipe > 0 && this.compared >= 0) before = this.view(reader.source(this.compared), "before");
+        const linked = reader.program("present", COVER, PRESENT);
+        gl.useProgram(linked.program);
+        reader.bindTextures(linked, [this.shown, before], []);
+        reader.setUniform(linked, "room", this.size);
+        reader.setUniform(linked, "wipe", [this.wipe]);
+        gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+        gl.viewport(0, 0, ...this.size);
+        gl.drawArrays(gl.TRIANGLES, 0, 3);
+    }
+
+    // --- controls ------------------------------------------------------------------------------------------------
+
+    set(name, number) { this.knobs[name] = number; this.isDirty = true; }
+
+    buildControls() {
+        this.refreshers = [];
+        for (const control of this.package.controls) {
+            const row = document.createElement("div");
+            row.className = `control ${control.kind}`;
+            row.title = control.doc;
+            const build = {switch: "addSwitch", choice: "addChoice", color: "addColor"}[control.kind] || "addSliders";
+            this[build](row, control);
+            $("controls").append(row);
+        }
+        $("reset").onclick = () => {
+            this.knobs = {...this.rest};
+            this.refreshers.forEach(refresh => refresh());
+            this.isDirty = true;
+        };
+        $("reset").hidden = $("controls").childElementCount === 0;
+        this.refreshers.forEach(refresh => refresh());
+    }
+
+    label(row, text, id) {
+        const label = document.createElement("label");
+        label.textContent = text;
+        label.htmlFor = id;
+        row.append(label);
+    }
+
+    addSliders(row, {name, label, kind, knobs, unit}) {
+        knobs.forEach((knob, at) => {
+            const slider = document.createElement("input"), number = document.createElement("input");
+            const id = `control-${knob.name}`, isWhole = kind === "whole";
+            this.label(row, knobs.length > 1 ? `${label} ${"xyzw"[at]}` : label, id);
+            number.type = "number"; slider.type = "range"; slider.id = id;
+            slider.setAttribute("aria-label", label);
+            for (const input of [slider, number]) {
+                input.min = knob.low; input.max = knob.high; input.step = isWhole ? 1 : "any";
+                input.oninput = () => {
+                    const value = Math.min(Math.max(parseFloat(input.value), knob.low), knob.high);
+                    if (isNaN(value)) return;
+                    this.set(knob.name, isWhole ? Math.round(value) : value);
+                    (input === slider ? refresh : fill)();
+                };
+            }
+            number.title = unit;
+            const fill = () => {
+                slider.value = this.knobs[knob.name];
+                slider.style.setProperty("--at", (slider.value - knob.low) / (knob.high - knob.low || 1));
+            };
+            const refresh = () => { number.value = +this.knobs[knob.name].toPrecision(4); fill(); };
+            slider.ondblclick = () => { this.set(knob.name, knob.rest); refresh(); };
+            this.refreshers.push(refresh);
+            row.append(number, slider);
+        });
+    }
+
+    addSwitch(row, {name, label, knobs: [knob]}) {
+        const box = document.createElement("input");
+        box.type = "checkbox"; box.id = `control-${name}`;
+        box.onchange = () => this.set(knob.name, box.checked ? 1 : 0);
+        this.refreshers.push(() => { box.checked = this.knobs[knob.name] > 0.5; });
+        this.label(row, label, box.id);
+        row.append(box);
+    }
+
+    addChoice(row, {name, label, choices, knobs: [knob]}) {
+        const list = document.createElement("select");
+        list.id = `control-${name}`;
+        choices.forEach((choice, at) => list.add(new Option(choice, at)));
+        list.onchange = () => this.set(knob.name, +list.value);
+        this.refreshers.push(() => { list.value = this.knobs[knob.name]; });
+        this.label(row, label, list.id);
+        row.append(list);
+    }
+
+    addColor(row, {name, label, knobs}) {
+        const field = document.createElement("input");
+        field.type = "color"; field.id = `control-${name}`;
+        field.oninput = () => [1, 3, 5].forEach((place, at) =>
+            knobs[at] && this.set(knobs[at].name, decode(parseInt(field.value.slice(place, place + 2), 16) / 255)));
+        this.refreshers.push(() => { field.value = hex(knobs.slice(0, 3).map(knob => this.knobs[knob.name])); });
+        this.label(row, label, field.id);
+        row.append(field);
+    }
+
+    // --- pictures ------------------------------------------------------------------------------------------------
+
+    buildSources() {
+        const inputs = this.package.sources.map((source, number) => ({...source, number})).filter(each => each.is_input);
+        const main = inputs.find(each => each.name === "beauty") || inputs[0];
+        this.compared = main ? main.number : -1;
+        $("own").hidden = $("compare").hidden = !main;
+        if (!main) return;
+        $("file").onchange = () => $("file").files[0] && this.load($("file").files[0], main);
+        for (const name of ["dragover", "drop"])
+            window.addEventListener(name, event => {
+                event.preventDefault();
+                const file = event.dataTransfer.files[0];
+                if (name === "drop" && file) this.load(file, main).catch(fail);
+            });
+        $("back").onclick = () => {
+            this.own.delete(main.number);
+            this.reader.dropSource(main.number);
+            $("back").hidden = true;
+            this.restart();
+        };
+        const move = event => {
+            const box = this.canvas.getBoundingClientRect();
+            this.setWipe(Math.min(Math.max((event.clientX - box.left) / box.width, 0), 1));
+        };
+        this.canvas.onpointerdown = event => {
+            if (!$("comparing").checked) return;
+            this.canvas.setPointerCapture(event.pointerId);
+            this.canvas.onpointermove = move;
+            move(event);
+        };
+        this.canvas.onpointerup = () => { this.canvas.onpointermove = null; };
+        $("comparing").onchange = () => this.setWipe($("comparing").checked ? 0.5 : 0);
+    }
+
+    setWipe(place) {
+        this.wipe = place;
+        $("handle").hidden = !$("comparing").checked;
+        $("handle").style.left = `${100 * place}%`;
+        if (this.reader && this.shown) this.present();
+    }
+
+    // A picture of the visitor, cropped to the shape of the source, as light.
+    async load(file, source) {
+        const bitmap = await createImageBitmap(file).catch(() => { throw new Error(`${file.name} is no picture`); });
+        const [width, height] = source.size, scale = Math.max(width / bitmap.width, height / bitmap.height);
+        const sheet = document.createElement("canvas");
+        [sheet.width, sheet.height] = [width, height];
+        const pen = sheet.getContext("2d");
+        pen.imageSmoothingQuality = "high";
+        const [across, down] = [bitmap.width * scale, bitmap.height * scale];
+        pen.drawImage(bitmap, (width - across) / 2, (height - down) / 2, across, down);
+        const codes = pen.getImageData(0, 0, width, height).data, light = new Float32Array(codes.length);
+        const table = Float32Array.from({length: 256}, (_, code) => decode(code / 255));
+        for (let at = 0; at < codes.length; at += 4) {
+            const alpha = codes[at + 3] / 255;
+            for (let c = 0; c < 3; ++c) light[at + c] = table[codes[at + c]] * alpha;
+            light[at + 3] = alpha;
+        }
+        this.own.set(source.number, light);
+        this.reader.replaceSource(source.number, light);
+        $("back").hidden = false;
+        this.restart();
+    }
+
+    // --- time and saving -----------------------------------------------------------------------------------------
+
+    buildTime() {
+        const [first, last] = this.package.frames;
+        $("time").hidden = first === last;
+        Object.assign($("frame"), {min: first, max: last, step: 1, value: first});
+        $("frame").oninput = () => { this.frame = +$("frame").value; this.isDirty = true; };
+        $("play").onclick = () => {
+            this.isPlaying = !this.isPlaying;
+            $("play").textContent = this.isPlaying ? "Pause" : "Play";
+        };
+        $("save").onclick = () => {
+            const [wipe, link] = [this.wipe, document.createElement("a")];
+            this.wipe = 0; this.present();
+            this.canvas.toBlob(blob => {
+                link.href = URL.createObjectURL(blob);
+                link.download = `${this.package.name}.png`;
+                link.click();
+                URL.revokeObjectURL(link.href);
+                this.wipe = wipe; this.present();
+            });
+        };
+    }
+}
+
+function fail(fault) {
+    $("fault").hidden = false;
+    $("fault").textContent = `The picture cannot be shown: ${fault.message}`;
+    document.body.classList.add("ready");
+}
+
+async function open() {
+    const parts = JSON.parse($("package").textContent);
+    const content = JSON.parse(new TextDecoder().decode(await inflate(parts.content, 0)));
+    const blobs = await Promise.all(parts.blobs.map(([stride, text]) => inflate(text, stride)));
+    window.halation = new Page(content, blobs);
+    for (const note of [...content.notes, ...window.halation.reader.notes]) {
+        const line = document.createElement("li");
+        line.textContent = note;
+        $("notes").append(line);
+    }
+}
+
+open().catch(fail);

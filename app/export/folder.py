@@ -1,0 +1,62 @@
+"""Exports a graph as a folder: programs in four versions of GLSL, `passes.json`, pictures, and a reader."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from importlib import resources
+from pathlib import Path
+from types import MappingProxyType
+
+from ..errors import OutputError
+from ..resources.atomic_write import write_bytes_atomically, write_text_atomically
+from .order import ExportOrder, ExportReport
+from .package import Package, assemble_package
+from .package.dialects import COVERING_VERTEX, DIALECTS
+
+READERS: Mapping[str, str] = MappingProxyType(
+    {"read_package.py": "read_package.py.txt", "read_package.js": "read_package.js", "README.md": "package_readme.md"}
+)
+"""Files of the folder that are the same for all graphs, and the assets that they are copies of."""
+
+
+def export_folder(order: ExportOrder) -> ExportReport:
+    """Write the folder. Raises GraphError, OutputError."""
+    assert order.output is not None
+    folder = order.output
+    package = assemble_package(order)
+    _make_folder(folder)
+    for name, text in list_texts(package).items():
+        _make_folder((folder / name).parent)
+        write_text_atomically(folder / name, text, sandbox=order.sandbox)
+    for number, blob in enumerate(package.blobs):
+        _make_folder(folder / "pixels")
+        write_bytes_atomically(folder / f"pixels/{number}.bin", blob, sandbox=order.sandbox)
+    passes = [len(plan["passes"]) for variants in package.document["plans"] for plan in variants]
+    figures: dict[str, float | str] = {
+        "programs": len(package.programs),
+        "passes": max(passes),
+        "variants": len(passes),
+        "controls": len(package.document["controls"]),
+    }
+    return ExportReport((str(folder),), package.notes, figures)
+
+
+def list_texts(package: Package) -> dict[str, str]:
+    """The texts of the folder by their names in it."""
+    texts: dict[str, str] = {"passes.json": json.dumps(package.document, separators=(",", ":")) + "\n"}
+    for dialect, write in DIALECTS.items():
+        texts[f"{dialect}/cover.vert"] = write(COVERING_VERTEX)
+        for number, (fragment, vertex) in enumerate(package.programs):
+            texts[f"{dialect}/{number}.frag"] = write(fragment)
+            if vertex:
+                texts[f"{dialect}/{number}.vert"] = write(vertex)
+    assets = resources.files(__package__ or "") / "assets"
+    return texts | {name: (assets / asset).read_text("utf-8") for name, asset in READERS.items()}
+
+
+def _make_folder(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=False, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"{folder}: the folder cannot be made: {error.strerror}") from None

@@ -1,0 +1,203 @@
+"""Assembles a package of the plans for all variants and of the parts that they share."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from functools import cache
+
+from msgspec import Struct
+
+from ...compiler import Plan
+from ...version import VERSION
+from ..order import ExportOrder
+from .curves import PairSamples, Record, find_needed_places
+from .display import write_display_program
+from .knobs import FRAME, Knob, PackageControl, Point
+from .parts import SharedParts, VariantSamples
+from .planning import OUTPUT, Phase, PointPlanner
+from .sampling import Sample, is_number_table
+from .variants import Span, VariantAxis, choose_axes, find_axis
+
+
+class Package(Struct, frozen=True):
+    """A package: its JSON without pixels, and the programs and bytes that it names by number."""
+
+    document: Record
+    notes: tuple[str, ...]
+    programs: tuple[tuple[str, str], ...]
+    """Fragment and vertex shader of each program, GLSL 4.10; without a vertex shader it covers the picture."""
+    blobs: tuple[bytes, ...]
+
+
+def assemble_package(order: ExportOrder) -> Package:
+    """The package of one output of a graph. Raises the errors of compiling it."""
+    return _Assembly(order).assemble()
+
+
+class _Assembly:
+    """One package: the planner, and the parts so far."""
+
+    def __init__(self, order: ExportOrder) -> None:
+        self.order = order
+        self.planner = PointPlanner(order)
+        self.parts = SharedParts(self.planner.provider.load_pixels)
+        self.samples: dict[str, dict[float, Sample]] = {}
+        """Samples of each knob while all others rest, of the last phase."""
+
+    def assemble(self) -> Package:
+        """All plans: for the first frame, and for the frames after it if nodes remember something."""
+        planner = self.planner
+        first, last = planner.first, planner.last
+        phases = [Phase({})]
+        opening = planner.plan({FRAME: first}, phases[0])
+        if opening.memories:
+            phases.append(Phase(opening.memories))
+        start = first + len(phases) - 1
+        knobs = [knob for control in planner.controls for knob in control.knobs]
+        if last > start:
+            knobs.append(Knob(FRAME, start, start, last, is_whole=True))
+        base = {FRAME: float(start), **planner.find_base(knobs, phases[-1])}
+        self.samples = {knob.name: planner.sample_knob(knob, base, phases[-1]) for knob in knobs}
+        found_axes = (find_axis(knob.name, base[knob.name], self.samples[knob.name]) for knob in knobs)
+        axes, held_axes = choose_axes([axis for axis in found_axes if axis])
+        held_names = {axis.knob for axis in held_axes}
+        knobs = [knob for knob in knobs if knob.name not in held_names]
+        opening_knobs = [knob for knob in knobs if knob.name != FRAME] if len(phases) > 1 else knobs
+        plans = [self._write_plans(axes, opening_knobs, {**base, FRAME: float(first)}, phases[0])]
+        plans += [self._write_plans(axes, knobs, base, phase) for phase in phases[1:]]
+        document = self._write_head((first, first if FRAME in held_names else last), axes, held_names)
+        document |= self._write_display(opening)
+        document |= {"slots": self.parts.slots, "plans": plans}
+        notes = (*planner.notes, *_describe_held(held_axes), *self._describe_poor())
+        return Package(document, notes, tuple(self.parts.programs), tuple(self.parts.blobs))
+
+    def _write_plans(self, axes: Sequence[VariantAxis], knobs: list[Knob], base: Point, phase: Phase) -> list[Record]:
+        """The plans of all variants; the span of the last axis changes fastest."""
+        names = [axis.knob for axis in axes]
+        return [
+            self._write_variant(dict(zip(names, spans, strict=True)), knobs, base, phase)
+            for spans in itertools.product(*(axis.spans for axis in axes))
+        ]
+
+    def _write_variant(self, spans: Mapping[str, Span], knobs: list[Knob], base: Point, phase: Phase) -> Record:
+        """One plan: the passes within spans of the knobs that change them, with curves for all numbers."""
+        planner = self.planner
+        middle = {**base, **{name: span.middle for name, span in spans.items() if name in base}}
+        rest = planner.take(middle, phase)
+        by_knob: dict[str, dict[float, Sample]] = {}
+        for knob in knobs:
+            places = list(self.samples[knob.name])
+            if span := spans.get(knob.name):
+                places = [x for x in places if span.low <= x <= span.high]
+            places = find_needed_places(self.samples[knob.name], places)
+            taken = {x: planner.take_like(rest, {**middle, knob.name: x}, knob, phase) for x in places}
+            by_knob[knob.name] = {x: sample for x, sample in taken.items() if sample}
+        checks = planner.sample_checks(middle, knobs, spans, rest, phase)
+
+        @cache
+        def sample_pairs(first: str, second: str) -> PairSamples:
+            one, other = ((name, list(by_knob[name])) for name in (first, second))
+            return planner.sample_pairs(one, other, middle, rest, phase)
+
+        return self._write_plan(VariantSamples(rest, by_knob, checks, sample_pairs), phase)
+
+    def _write_plan(self, samples: VariantSamples, phase: Phase) -> Record:
+        """A plan; slots are numbered as `take_apart` lists them."""
+        plan, numbers, parts = samples.rest.plan, itertools.count(), self.parts
+        passes: list[Record] = []
+        for render_pass in plan.passes:
+            places = [next(numbers) for _ in range(len(render_pass.uniforms) + bool(render_pass.weights))]
+            snapped = samples.find_snapped(places)
+            slots = [parts.add_slot(place, samples, snapped) for place in places]
+            record: Record = {
+                "nodes": list(render_pass.nodes),
+                "program": parts.add_program(render_pass.shader.source, render_pass.shader.vertex),
+                "textures": list(render_pass.textures),
+                "targets": list(render_pass.targets),
+                "uniforms": {name: slot for (name, _), slot in zip(render_pass.uniforms, slots, strict=False)},
+            }
+            if render_pass.weights:
+                record["weights"] = slots[-1]
+            if render_pass.tables:
+                record["tables"] = [parts.add_table(table) for table in render_pass.tables]
+            if render_pass.mesh:
+                record["mesh"] = parts.add_mesh(render_pass.mesh)
+            passes.append(record)
+        surfaces = _write_surfaces(plan, phase)
+        for upload in plan.uploads:
+            if is_number_table(upload.picture):
+                place = next(numbers)
+                slot = parts.add_slot(place, samples, samples.find_snapped([place]))
+                surfaces[upload.surface]["numbers"] = slot
+            else:
+                surfaces[upload.surface]["source"] = parts.add_source(upload, plan)
+        keys = {surface.key: number for number, surface in enumerate(plan.surfaces)}
+        memories = {str(port): keys[memory.key] for port, memory in plan.memories.items() if memory.key in keys}
+        return {"surfaces": surfaces, "passes": passes, "output": plan.outputs[OUTPUT], "memories": memories}
+
+    def _write_head(self, frames: tuple[int, int], axes: Sequence[VariantAxis], held_names: set[str]) -> Record:
+        used_knobs = {curve["knob"] for record in self.parts.slots for curve in record.get("curves", ())}
+        used_knobs |= {axis.knob for axis in axes}
+        controls = [
+            control
+            for control in self.planner.controls
+            if (names := {knob.name for knob in control.knobs}) & used_knobs and not names & held_names
+        ]
+        if FRAME not in used_knobs and not self.planner.remembers:
+            frames = frames[0], frames[0]
+        return {
+            "halation_package": 1,
+            "made_by": f"Halation {VERSION}",
+            "name": self.order.name,
+            "frames": list(frames),
+            "rate": float(self.order.graph.settings.rate),
+            "controls": [_write_control(control) for control in controls],
+            "axes": [{"knob": axis.knob, "edges": axis.edges} for axis in axes],
+            "sources": self.parts.sources,
+        }
+
+    def _write_display(self, plan: Plan) -> Record:
+        encodings = self.planner.provider
+        fragment, tables, view = write_display_program(self.order, plan, plan.outputs[OUTPUT], encodings)
+        program = self.parts.add_program(fragment)
+        return {"display": {"program": program, "view": view, "tables": [self.parts.add_table(t) for t in tables]}}
+
+    def _describe_poor(self) -> list[str]:
+        names = sorted({name.partition(".")[0] for name in self.parts.poor_knobs})
+        if not names:
+            return []
+        return [f"controls {', '.join(names)} change the same numbers: where both are moved far, the look may differ"]
+
+
+def _write_surfaces(plan: Plan, phase: Phase) -> list[Record]:
+    ports = {memory.key: str(port) for port, memory in phase.memories.items()}
+    surfaces: list[Record] = []
+    for surface in plan.surfaces:
+        record: Record = {"size": list(surface.size), "format": surface.texel, "slot": surface.slot}
+        surfaces.append({**record, "history": ports[surface.key]} if surface.key in ports else record)
+    return surfaces
+
+
+def _describe_held(axes: Sequence[VariantAxis]) -> list[str]:
+    """A sentence on each knob that keeps its value."""
+    return [
+        "it shows one frame: other frames need other passes"
+        if axis.knob == FRAME
+        else f"control '{axis.knob.partition('.')[0]}' keeps its value: it changes passes, as others do already"
+        for axis in axes
+    ]
+
+
+def _write_control(control: PackageControl) -> Record:
+    value = control.value
+    knobs = [{"name": knob.name, "rest": knob.rest, "low": knob.low, "high": knob.high} for knob in control.knobs]
+    record: Record = {
+        "name": control.name,
+        "label": control.label,
+        "doc": control.doc,
+        "kind": control.widget,
+        "unit": value.unit or "",
+        "knobs": knobs,
+    }
+    return {**record, "choices": list(value.choices)} if value.choices else record

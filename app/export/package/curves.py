@@ -1,0 +1,167 @@
+"""Numbers of a slot as curves of knobs: polygons through samples, added or multiplied."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from .sampling import Array, Sample
+
+_SAME = 1e-7
+"""Difference of numbers, as a part of the largest, that is rounding: half of what a float of 24 bits resolves."""
+LINE = 2e-5
+"""How far a sample may lie beside the polygon that leaves it out, as a part of the largest number."""
+
+Record = dict[str, Any]
+PairSamples = tuple[list[float], list[float], Sequence[Sequence[Sample | None]]]
+"""Values of two knobs, and the samples at all combinations of them; None where the passes are others."""
+
+
+def write_slot(
+    number: int,
+    base: Sample,
+    samples: Mapping[str, Mapping[float, Sample]],
+    checks: list[Any],
+    snapped_knobs: frozenset[str] = frozenset(),
+) -> Record:
+    """A slot as JSON: its numbers at rest, and a curve for each knob that changes them.
+
+    `checks` are points with all knobs elsewhere, and their samples: they decide whether curves are added or multiplied.
+    Along `snapped_knobs` the nearest sample counts, with nothing between.
+    """
+    slot = base.slots[number]
+    lengths = {len(s.slots[number].numbers) for group in samples.values() for s in group.values()}
+    length = max({len(slot.numbers)} | lengths)
+    rest = _pad(slot.numbers, length)
+    curves: list[Record] = []
+    for name, group in samples.items():
+        places = np.array(list(group))
+        rows = np.array([_pad(sample.slots[number].numbers, length) for sample in group.values()])
+        largest = max(float(np.abs(rows).max(initial=0.0)), 1e-12)
+        if len(places) > 1 and np.abs(rows - rest).max(initial=0.0) > _SAME * largest:
+            is_snapped = name in snapped_knobs
+            keep = list(range(len(places))) if is_snapped else simplify(places, rows)
+            curve: Record = {"knob": name, "at": _round(places[keep]), "values": [_round(row) for row in rows[keep]]}
+            curves.append({**curve, "snap": True} if is_snapped else curve)
+    record: Record = {"base": _round(rest)}
+    if slot.is_whole:
+        record["whole"] = True
+    if curves:
+        record["curves"] = curves
+    if len(curves) > 1:
+        record["mode"] = _choose_mode(record, number, length, checks)
+    return record
+
+
+def read_slot(record: Record, point: Mapping[str, float], mode: str = "") -> Array:
+    """The numbers of a slot at a point: what every reader of a package computes."""
+    base = np.array(record["base"])
+    numbers = base.copy()
+    for curve in record.get("curves", ()):
+        places, rows = np.array(curve["at"]), np.array(curve["values"])
+        x = point.get(curve["knob"])
+        if x is None:
+            continue
+        if curve.get("snap"):
+            row = rows[np.abs(places - x).argmin()]
+        else:
+            row = np.array([np.interp(x, places, column) for column in rows.T])
+        if (mode or record.get("mode", "add")) == "multiply":
+            ratio = np.divide(row, base, out=np.zeros_like(row), where=base != 0.0)
+            numbers = np.where(base != 0.0, numbers * ratio, numbers + row)
+        else:
+            numbers += row - base
+    for grid in record.get("grids", ()):
+        numbers += _interpolate_grid(grid, *(point[name] for name in grid["knobs"]))
+    return numbers
+
+
+def add_grids(
+    record: Record, number: int, pairs: Callable[[str, str], PairSamples], checks: list[Any], limit: float
+) -> None:
+    """Add what two knobs change together and their curves do not say, for each pair of knobs that needs it."""
+    names = [curve["knob"] for curve in record["curves"] if not curve.get("snap")]
+    for first, second in itertools.combinations(names, 2):
+        if measure_error(record, number, checks) <= limit:
+            return
+        xs, ys, rows = pairs(first, second)
+        length = len(record["base"])
+        rest = np.zeros((len(xs), len(ys), length))
+        for (i, x), (j, y) in itertools.product(enumerate(xs), enumerate(ys)):
+            if (sample := rows[i][j]) is not None:
+                numbers = _pad(sample.slots[number].numbers, length)
+                rest[i, j] = numbers - read_slot({**record, "grids": ()}, {first: x, second: y})
+        if np.abs(rest).max(initial=0.0) > LINE * max(float(np.abs(record["base"]).max()), 1e-12):
+            values = [[_round(row) for row in line] for line in rest]
+            record.setdefault("grids", []).append(
+                {"knobs": [first, second], "at": [_round(np.array(xs)), _round(np.array(ys))], "values": values}
+            )
+
+
+def _interpolate_grid(grid: Record, x: float, y: float) -> Array:
+    """The row of a grid between four others."""
+    xs, ys = grid["at"]
+    values = np.array(grid["values"])
+    lines = [np.array([np.interp(y, ys, column) for column in line.T]) for line in values]
+    return np.array([np.interp(x, xs, column) for column in np.array(lines).T])
+
+
+def simplify(places: Array, rows: Array) -> list[int]:
+    """The places that a polygon needs: those on the line between their neighbors are left out."""
+    largest = max(float(np.abs(rows).max(initial=0.0)), 1e-12)
+    keep = [0]
+    for at in range(1, len(places) - 1):
+        first, last = keep[-1], at + 1
+        share = (places[at] - places[first]) / (places[last] - places[first])
+        inside = np.arange(first + 1, last)
+        shares = (places[inside] - places[first]) / (places[last] - places[first])
+        lines = rows[first] + shares[:, None] * (rows[last] - rows[first])
+        if not 0.0 < share < 1.0 or np.abs(lines - rows[inside]).max(initial=0.0) > LINE * largest:
+            keep.append(at)
+    return [*keep, len(places) - 1]
+
+
+def find_needed_places(samples: Mapping[float, Sample], places: list[float]) -> list[float]:
+    """The places that the curves of all slots need; all where the structure is not the same everywhere."""
+    group = [samples[x] for x in places]
+    if len(places) < 3 or len({sample.structure for sample in group}) > 1:
+        return places
+    needed: set[int] = {0, len(places) - 1}
+    for number in range(len(group[0].slots)):
+        if len({len(sample.slots[number].numbers) for sample in group}) > 1:
+            return places
+        needed.update(simplify(np.array(places), np.array([sample.slots[number].numbers for sample in group])))
+    return [places[at] for at in sorted(needed)]
+
+
+def _choose_mode(record: Record, number: int, length: int, checks: list[Any]) -> str:
+    """How curves are joined: "add", or "multiply" where that predicts the checks better."""
+    errors = {"add": 0.0, "multiply": 0.0}
+    for point, sample in checks:
+        numbers = _pad(sample.slots[number].numbers, length)
+        for mode in errors:
+            errors[mode] += float(np.abs(read_slot(record, point, mode) - numbers).max(initial=0.0))
+    return min(errors, key=lambda mode: errors[mode])
+
+
+def measure_error(record: Record, number: int, checks: list[Any]) -> float:
+    """The largest error of a slot at the checks, as a part of its largest number."""
+    largest, error = 1e-9, 0.0
+    for point, sample in checks:
+        numbers = _pad(sample.slots[number].numbers, len(record["base"]))
+        largest = max(largest, float(np.abs(numbers).max(initial=0.0)))
+        error = max(error, float(np.abs(read_slot(record, point) - numbers).max(initial=0.0)))
+    return error / largest
+
+
+def _pad(numbers: Array, length: int) -> Array:
+    return np.pad(numbers, (0, max(length - len(numbers), 0)))
+
+
+def _round(numbers: Array) -> list[float]:
+    """Numbers with the digits of a 32-bit float, whole ones without a point."""
+    short = (float(f"{number:.9g}") for number in numbers.tolist())
+    return [int(number) if number == int(number) and abs(number) < 1e15 else number for number in short]

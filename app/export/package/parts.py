@@ -1,0 +1,130 @@
+"""What the plans of a package have in common, written once: numbers, programs, pixels, tables and triangles."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from halation.nodes import Kind
+
+from ...compiler import Plan, Upload
+from ...resources.color_program import LookupTable
+from ...resources.mesh import Mesh
+from ...resources.picture import Picture
+from .curves import PairSamples, Record, add_grids, measure_error, write_slot
+from .knobs import FRAME
+from .sampling import LoadFunction, Sample
+
+POOR_FIT = 0.02
+"""The error of numbers, as a part of the largest, above which a note says so: about two steps of 8 bits for what scales
+a color of middle gray."""
+
+Checks = list[Any]
+
+
+@dataclass(eq=False)
+class VariantSamples:
+    """The samples of one variant: at rest, along each knob, at checks, and by pairs of knobs."""
+
+    rest: Sample
+    by_knob: Mapping[str, Mapping[float, Sample]]
+    checks: Checks
+    pairs: Callable[[str, str], PairSamples]
+
+    def find_snapped(self, places: list[int]) -> frozenset[str]:
+        """The knobs along which the numbers of a pass jump: its whole numbers bend, or weights change in number."""
+        snapped: set[str] = set()
+        for name, group in self.by_knob.items():
+            xs = np.array(list(group))
+            for place in places:
+                slots = [sample.slots[place] for sample in group.values()]
+                if len({len(slot.numbers) for slot in slots}) > 1:
+                    snapped.add(name)
+                elif slots and slots[0].is_whole and len(xs) > 2:
+                    rows = np.array([slot.numbers for slot in slots])
+                    lines = rows[0] + (xs - xs[0])[:, None] / (xs[-1] - xs[0]) * (rows[-1] - rows[0])
+                    if np.abs(lines - rows).max(initial=0.0) > 0.51:
+                        snapped.add(name)
+        return frozenset(snapped)
+
+
+@dataclass
+class SharedParts:
+    """Parts by what they are, numbered in the order in which they came."""
+
+    load: LoadFunction
+    programs: dict[tuple[str, str], int] = field(default_factory=dict[tuple[str, str], int])
+    blobs: dict[bytes, int] = field(default_factory=dict[bytes, int])
+    slots: list[Record] = field(default_factory=list[Record])
+    sources: list[Record] = field(default_factory=list[Record])
+    poor_knobs: set[str] = field(default_factory=set[str])
+    """Knobs that change numbers together in a way that curves and grids do not follow."""
+    _numbers: dict[str, int] = field(default_factory=dict[str, int])
+    _pictures: dict[Picture, int] = field(default_factory=dict[Picture, int])
+    _tables: dict[str, Record] = field(default_factory=dict[str, Record])
+    _meshes: dict[str, Record] = field(default_factory=dict[str, Record])
+
+    def add_program(self, fragment: str, vertex: str = "") -> int:
+        """The number of a program, GLSL 4.10."""
+        return self.programs.setdefault((fragment, vertex), len(self.programs))
+
+    def add_slot(self, place: int, samples: VariantSamples, snapped: frozenset[str]) -> int:
+        """The number of a slot with all its curves."""
+        record = write_slot(place, samples.rest, samples.by_knob, samples.checks, snapped)
+        if len(record.get("curves", ())) > 1:
+            add_grids(record, place, samples.pairs, samples.checks, POOR_FIT / 8)
+            if measure_error(record, place, samples.checks) > POOR_FIT:
+                self.poor_knobs |= {curve["knob"] for curve in record["curves"]} - {FRAME}
+        text = json.dumps(record)
+        if text not in self._numbers:
+            self._numbers[text] = len(self.slots)
+            self.slots.append(record)
+        return self._numbers[text]
+
+    def add_blob(self, content: bytes) -> int:
+        """The number of some bytes."""
+        return self.blobs.setdefault(content, len(self.blobs))
+
+    def add_source(self, upload: Upload, plan: Plan) -> int:
+        """The number of a picture from a file, or of a bound one."""
+        picture, node = upload.picture, upload.node
+        if picture not in self._pictures:
+            surface, pixels = plan.surfaces[upload.surface], self.load(picture)
+            depth = np.float16 if surface.depth == "f2" else np.float32
+            whole = np.zeros((*pixels.shape[:2], surface.components), depth)
+            whole[..., : pixels.shape[2]] = pixels[..., : surface.components]
+            self._pictures[picture] = len(self.sources)
+            self.sources.append(
+                {
+                    "name": node.removeprefix("inputs."),
+                    "is_input": node.startswith("inputs.") and picture.kind is Kind.IMAGE,
+                    "size": list(surface.size),
+                    "format": surface.texel,
+                    "blob": self.add_blob(whole.tobytes()),
+                }
+            )
+        return self._pictures[picture]
+
+    def add_table(self, table: LookupTable) -> Record:
+        """A table of a color library."""
+        if table.sampler not in self._tables:
+            values = np.ascontiguousarray(table.values, np.float32)
+            self._tables[table.sampler] = {
+                "sampler": table.sampler,
+                "shape": list(values.shape),
+                "linear": table.linear,
+                "blob": self.add_blob(values.tobytes()),
+            }
+        return self._tables[table.sampler]
+
+    def add_mesh(self, mesh: Mesh) -> Record:
+        """The triangles of a mesh."""
+        if mesh.digest not in self._meshes:
+            self._meshes[mesh.digest] = {
+                "vertices": self.add_blob(np.ascontiguousarray(mesh.vertices, np.float32).tobytes()),
+                "indices": self.add_blob(np.ascontiguousarray(mesh.indices, np.uint32).tobytes()),
+            }
+        return self._meshes[mesh.digest]

@@ -1,0 +1,161 @@
+"""Plans a graph at points of its knobs, for frames with and without a memory of the frame before."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ...compiler import Memory, Plan, Planner, Request, Target
+from ...errors import GraphError, describe_owner
+from ...graph import Graph, Port
+from ...inputs.provider import MediaProvider
+from ..order import ExportOrder
+from .curves import PairSamples
+from .knobs import FRAME, Knob, Point, find_controls
+from .sampling import BESIDE, KnobSampler, Sample, take_apart
+from .variants import Span
+
+TARGET = Target("a package", 410, software=False, form="fragment", precision="float", max_samplers=16, max_targets=8)
+"""What plans are made for: fragment passes with buffers of 32 bits, as WebGL 2 and OpenGL 3.3 can run them."""
+
+OUTPUT = "image"
+USUAL_FRAMES = 120
+"""Frames of a graph that changes with time and names no range: five seconds at 24 frames per second."""
+
+MAX_FRAMES = 240
+"""Frames whose numbers a package holds. Chosen by judgement: ten seconds."""
+
+GRID = 9
+"""Values of each of two knobs that change the same numbers. With 9 the picture of the preset soft_bloom, whose size and
+spread do, differs by less than a step of 8 bits."""
+
+CHECKS = 4
+"""Points at which all knobs are elsewhere, to see how the curves of several knobs are joined."""
+
+
+@dataclass(eq=False)
+class Phase:
+    """The first frame, or all frames after it: what nodes remember, and the planner that follows its own plans."""
+
+    memories: Mapping[Port, Memory]
+    planner: Planner = field(default_factory=Planner)
+
+
+class PointPlanner:
+    """Plans one output of a graph at points, and remembers the samples."""
+
+    def __init__(self, order: ExportOrder) -> None:
+        self.order, self.graph = order, order.graph
+        self.provider = MediaProvider(sandbox=order.sandbox)
+        self.controls, self.notes = find_controls(self.graph)
+        self._bindings = self.provider.bind(self.graph, order.inputs)
+        self.first, self.last = self._find_frames()
+        self._samples: dict[object, Sample] = {}
+        self.remembers = False
+        """Whether nodes remember earlier frames."""
+
+    def plan(self, point: Point, phase: Phase) -> Plan:
+        """The plan at a point. Raises GraphError where no other program could run it."""
+        graph: Graph = self.graph
+        for control in self.controls:
+            if any(knob.name in point for knob in control.knobs):
+                graph = graph.set_control(control.name, control.value_at(point))
+        frame, order = round(point.get(FRAME, self.first)), self.order
+        request = Request({OUTPUT: order.target}, self._bindings, order.size, frame=frame, memories=phase.memories)
+        plan = phase.planner.plan(graph, request, self.provider, target=TARGET)
+        _refuse_unsuitable(plan)
+        self.remembers = self.remembers or bool(plan.memories)
+        return plan
+
+    def take(self, point: Point, phase: Phase) -> Sample:
+        """The sample at a point."""
+        key = (id(phase), *sorted(point.items()))
+        if key not in self._samples:
+            self._samples[key] = take_apart(self.plan(point, phase), self.provider.load_pixels)
+        return self._samples[key]
+
+    def take_like(self, rest: Sample, point: Point, knob: Knob, phase: Phase) -> Sample | None:
+        """The sample at a point, or beside it where a node is left out; None where the passes are others anyway."""
+        sample = self.take(point, phase)
+        if sample.structure != rest.structure and not knob.is_whole:
+            sample = self.take({**point, knob.name: _step_aside(point[knob.name], knob)}, phase)
+        return sample if sample.structure == rest.structure else None
+
+    def find_base(self, knobs: list[Knob], phase: Phase) -> dict[str, float]:
+        """A point near the settings of the graph at which no node is left out."""
+        base = {knob.name: knob.rest for knob in knobs}
+        for knob in knobs:
+            if knob.is_whole or knob.high == knob.low:
+                continue
+            beside = {**base, knob.name: _step_aside(knob.rest, knob)}
+            if self.take(base, phase).structure != self.take(beside, phase).structure:
+                base = beside
+        return base
+
+    def sample_knob(self, knob: Knob, base: Point, phase: Phase) -> dict[float, Sample]:
+        """Samples over the range of a knob, while all others rest."""
+        is_dense = knob.name == FRAME and bool(self.graph.animation)
+        return KnobSampler(lambda point: self.take(point, phase), base, knob, is_dense).sample_range()
+
+    def sample_checks(
+        self, middle: Point, knobs: list[Knob], spans: Mapping[str, Span], rest: Sample, phase: Phase
+    ) -> list[tuple[Point, Sample]]:
+        """Samples at points where all knobs are elsewhere."""
+        random = np.random.default_rng(7)
+        checks: list[tuple[Point, Sample]] = []
+        for _ in range(CHECKS):
+            point = dict(middle)
+            for knob in knobs:
+                span = spans.get(knob.name)
+                low, high = (span.low, span.high) if span else (knob.low, knob.high)
+                point[knob.name] = knob.snap(low + (high - low) * (0.1 + 0.8 * random.random()))
+            sample = self.take(point, phase)
+            if sample.structure == rest.structure:
+                checks.append((point, sample))
+        return checks
+
+    def sample_pairs(
+        self, first: tuple[str, list[float]], second: tuple[str, list[float]], middle: Point, rest: Sample, phase: Phase
+    ) -> PairSamples:
+        """Samples at combinations of two knobs, given with the values that each may have."""
+        (one, xs), (other, ys) = ((name, _thin([*places, middle[name]])) for name, places in (first, second))
+        rows = [[self.take({**middle, one: x, other: y}, phase) for y in ys] for x in xs]
+        return xs, ys, [[sample if sample.structure == rest.structure else None for sample in row] for row in rows]
+
+    def _find_frames(self) -> tuple[int, int]:
+        """The frames that the package shows."""
+        if self.order.frame is not None:
+            return self.order.frame, self.order.frame
+        settings = self.graph.settings.frames
+        first, last = settings or self.provider.find_frames(self.graph, self._bindings)
+        if last == first and settings is None:
+            last = first + USUAL_FRAMES - 1
+        return first, min(last, first + MAX_FRAMES - 1)
+
+
+def _step_aside(x: float, knob: Knob) -> float:
+    step = (knob.high - knob.low) * BESIDE
+    return x + step if x + step <= knob.high else x - step
+
+
+def _thin(places: list[float]) -> list[float]:
+    """At most `GRID` of the places, with the first, the last, and the one at rest, which comes last in the list."""
+    ordered = sorted(set(places))
+    chosen = {ordered[round(at * (len(ordered) - 1) / (GRID - 1))] for at in range(GRID)}
+    return sorted(chosen | {places[-1]})
+
+
+def _refuse_unsuitable(plan: Plan) -> None:
+    """Raise GraphError for a plan that other programs cannot run."""
+    if plan.tiling is not None:
+        raise GraphError(f"{plan.tiling.why}, and a package has no tiles: export it smaller with --size")
+    for render_pass in plan.passes:
+        if render_pass.shader.foreign:
+            owner = render_pass.nodes[-1]
+            raise GraphError(
+                f"{describe_owner(owner)} is a shader of another format, which a package does not translate: use its "
+                "file, or mute the node",
+                node=owner,
+            )

@@ -1,0 +1,180 @@
+"""Plans a graph at many values of its knobs, and takes the plans apart into structure and numbers."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from halation.nodes import Uniform
+from msgspec import Struct
+
+from ...compiler import Plan
+from ...errors import HalationError
+from ...resources.picture import Picture
+from .knobs import Knob, Point
+
+FIRST_STEPS = 3
+"""Steps between the first samples of a knob; where numbers bend or passes change, samples between follow."""
+
+DENSE_STEPS = 8
+"""Whole numbers up to which each is sampled."""
+
+SMALLEST_STEP = 1 / 128
+"""The smallest step between samples, as a part of the range: two steps of a slider of 256 pixels."""
+
+BEND = 2e-3
+"""How far a number may lie beside the line between two samples, as a part of the largest number of its slot: half a
+step of 8 bits for what scales a color."""
+
+BESIDE = 1e-4
+"""How far beside a special value a sample is taken, as a part of the range."""
+
+Array = np.ndarray
+LoadFunction = Callable[[Picture], Array]
+
+
+class Slot(Struct, frozen=True, eq=False):
+    """The numbers of one uniform, of the weights of a pass, or of a table that a node made."""
+
+    numbers: Array
+    is_whole: bool
+
+
+class Sample(Struct, frozen=True, eq=False):
+    """A plan taken apart: equal structures differ in the numbers of their slots alone."""
+
+    plan: Plan
+    structure: object
+    slots: tuple[Slot, ...]
+
+
+PlanFunction = Callable[[Point], Plan]
+
+
+def take_apart(plan: Plan, load: LoadFunction) -> Sample:
+    """The structure of a plan, and its slots: uniforms and weights by pass, then tables of numbers."""
+    slots: list[Slot] = []
+    structure: list[object] = []
+    number_surfaces = {upload.surface for upload in plan.uploads if is_number_table(upload.picture)}
+    for render_pass in plan.passes:
+        names = tuple((name, _count_numbers(value)) for name, value in render_pass.uniforms)
+        slots += [Slot(_as_array(value), _is_whole(value)) for _, value in render_pass.uniforms]
+        if render_pass.weights:
+            slots.append(Slot(np.asarray(render_pass.weights, np.float64), is_whole=False))
+        shader, tables = render_pass.shader, tuple(table.sampler for table in render_pass.tables)
+        mesh = render_pass.mesh.digest if render_pass.mesh else ""
+        structure.append((shader.source, shader.vertex, render_pass.textures, render_pass.targets, names, tables, mesh))
+    for number, surface in enumerate(plan.surfaces):
+        size = (0, 0) if number in number_surfaces else surface.size
+        structure.append((size, surface.channels, surface.depth, surface.slot))
+    for upload in plan.uploads:
+        if is_number_table(upload.picture):
+            pixels = load(upload.picture).astype(np.float64)
+            slots.append(Slot(np.concatenate([pixels.shape, pixels.reshape(-1)]), is_whole=False))
+        structure.append((upload.surface, is_number_table(upload.picture) or upload.picture))
+    structure += [tuple(plan.outputs.items()), tuple(plan.memories)]
+    return Sample(plan, tuple(structure), tuple(slots))
+
+
+def is_number_table(picture: Picture) -> bool:
+    """True for a table that a node computed of its values, such as a list of lights."""
+    return picture.in_memory and picture.path == "numbers"
+
+
+def _as_array(value: Uniform) -> Array:
+    return np.asarray(value if isinstance(value, tuple) else (value,), np.float64)
+
+
+def _count_numbers(value: Uniform) -> int:
+    return len(value) if isinstance(value, tuple) else 1
+
+
+def _is_whole(value: Uniform) -> bool:
+    return all(isinstance(part, int) for part in (value if isinstance(value, tuple) else (value,)))
+
+
+@dataclass
+class KnobSampler:
+    """Samples one knob while all others rest at `base`."""
+
+    take: Callable[[Point], Sample]
+    base: Point
+    knob: Knob
+    is_dense: bool = False
+    """Whether all whole numbers of the range are sampled: keys of an animation may be anywhere."""
+    samples: dict[float, Sample] = field(default_factory=dict[float, Sample])
+
+    def sample_range(self) -> dict[float, Sample]:
+        """Samples from low to high, close enough for lines between them."""
+        knob = self.knob
+        span = round(knob.high - knob.low)
+        count = max(span, 1) if knob.is_whole and (self.is_dense or span <= DENSE_STEPS) else FIRST_STEPS
+        places = sorted({knob.snap(x) for x in (*np.linspace(knob.low, knob.high, count + 1), knob.rest)})
+        for x in places:
+            self._add(x)
+        if not knob.is_whole:
+            self._replace_special(places)
+        for low, high in itertools.pairwise(places):
+            self._refine(low, high)
+        return dict(sorted(self.samples.items()))
+
+    def _take(self, x: float) -> Sample | None:
+        try:
+            return self.take({**self.base, self.knob.name: x})
+        except HalationError:
+            return None
+
+    def _add(self, x: float) -> Sample | None:
+        sample = self._take(x)
+        if sample is not None:
+            self.samples[x] = sample
+        return sample
+
+    def _replace_special(self, places: list[float]) -> None:
+        """Take samples beside special values, at which a node does nothing and the structure is another one."""
+        for at, x in enumerate(places):
+            sample = self.samples.get(x)
+            neighbors = [self.samples.get(places[k]) for k in (at - 1, at + 1) if 0 <= k < len(places)]
+            if (
+                sample is None
+                or len(places) < 3
+                or any(near and near.structure == sample.structure for near in neighbors)
+            ):
+                continue
+            self._take_beside(x, places[at - 1] < x if at else False)
+
+    def _take_beside(self, x: float, is_below: bool) -> None:
+        step = (self.knob.high - self.knob.low) * BESIDE
+        beside = self._take(x - step if is_below else x + step)
+        if beside is not None and beside.structure != self.samples[x].structure:
+            self.samples[x] = beside
+
+    def _refine(self, low: float, high: float) -> None:
+        """Add samples between two, until numbers between them lie on a line."""
+        middle = self.knob.snap((low + high) / 2.0)
+        if middle in (low, high) or high - low <= (self.knob.high - self.knob.low) * SMALLEST_STEP:
+            return
+        first, last = self.samples.get(low), self.samples.get(high)
+        sample = self._add(middle)
+        if first is None or last is None or sample is None:
+            return
+        if sample.structure not in (first.structure, last.structure):
+            self._take_beside(middle, is_below=False)
+            sample = self.samples[middle]
+        if first.structure == last.structure == sample.structure and _is_straight(first, sample, last):
+            return
+        self._refine(low, middle)
+        self._refine(middle, high)
+
+
+def _is_straight(first: Sample, middle: Sample, last: Sample) -> bool:
+    """True if all numbers of the middle sample lie between those of the others."""
+    for a, b, c in zip(first.slots, middle.slots, last.slots, strict=True):
+        if not len(a.numbers) == len(b.numbers) == len(c.numbers):
+            return False
+        largest = max(np.abs(a.numbers).max(initial=0.0), np.abs(c.numbers).max(initial=0.0), 1e-9)
+        if np.abs((a.numbers + c.numbers) / 2.0 - b.numbers).max(initial=0.0) > BEND * largest:
+            return False
+    return True

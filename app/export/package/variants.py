@@ -1,0 +1,66 @@
+"""Finds the knobs that change passes, and the spans within which the passes stay the same."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+
+from msgspec import Struct
+
+from .sampling import Sample
+
+MAX_SPANS = 16
+"""Spans of one knob. Of the presets, blurs of depth of field have the most pyramids: 14."""
+
+MAX_VARIANTS = 32
+"""Combinations of spans that a package may hold: each has its own list of passes, of about 10 KB."""
+
+
+class Span(Struct, frozen=True):
+    """A part of the range of a knob, with a value of the knob that stands for it."""
+
+    low: float
+    high: float
+    middle: float
+
+
+class VariantAxis(Struct, frozen=True):
+    """A knob that changes passes, and its spans from low to high."""
+
+    knob: str
+    spans: tuple[Span, ...]
+
+    @property
+    def edges(self) -> list[float]:
+        """The values of the knob between one span and the next."""
+        return [(a.high + b.low) / 2.0 for a, b in itertools.pairwise(self.spans)]
+
+
+def find_axis(knob: str, rest: float, samples: Mapping[float, Sample]) -> VariantAxis | None:
+    """The spans of a knob; None if its passes stay the same everywhere. The value at `rest` stands for its span."""
+    runs: list[list[float]] = []
+    structures: list[object] = []
+    for x, sample in samples.items():
+        if not structures or sample.structure != structures[-1]:
+            runs.append([])
+            structures.append(sample.structure)
+        runs[-1].append(x)
+    if len(runs) < 2:
+        return None
+    if len(runs) > MAX_SPANS:
+        runs = [runs[round(at * (len(runs) - 1) / (MAX_SPANS - 1))] for at in range(MAX_SPANS)]
+    middles = [rest if rest in run else run[len(run) // 2] for run in runs]
+    spans = (Span(run[0], run[-1], middle) for run, middle in zip(runs, middles, strict=True))
+    return VariantAxis(knob, tuple(spans))
+
+
+def choose_axes(axes: Sequence[VariantAxis]) -> tuple[list[VariantAxis], list[VariantAxis]]:
+    """The axes whose combinations a package can hold, and the others: those with few spans come first."""
+    chosen, others, count = list[VariantAxis](), list[VariantAxis](), 1
+    for axis in sorted(axes, key=lambda axis: len(axis.spans)):
+        if count * len(axis.spans) <= MAX_VARIANTS:
+            chosen.append(axis)
+            count *= len(axis.spans)
+        else:
+            others.append(axis)
+    return chosen, others

@@ -1,0 +1,76 @@
+"""Exports a graph as one HTML page: the package, its pixels, and a player for WebGL 2. The page loads nothing."""
+
+from __future__ import annotations
+
+import html
+import json
+import zlib
+from base64 import b64encode
+from importlib import resources
+
+from ..compiler.explain import format_bytes
+from ..document.about import find_about
+from ..resources.atomic_write import write_text_atomically
+from .order import ExportOrder, ExportReport
+from .package import Package, assemble_package
+from .package.dialects import write_es300
+
+
+def export_page(order: ExportOrder) -> ExportReport:
+    """Write the page. Raises GraphError, OutputError."""
+    assert order.output is not None
+    package = assemble_package(order)
+    text = make_page(package, order)
+    write_text_atomically(order.output, text, sandbox=order.sandbox)
+    document = package.document
+    figures: dict[str, float | str] = {
+        "controls": len(document["controls"]),
+        "passes": max(len(plan["passes"]) for variants in document["plans"] for plan in variants),
+        "variants": sum(map(len, document["plans"])),
+        "frames": document["frames"][1] - document["frames"][0] + 1,
+        "pictures": format_bytes(sum(len(_pack(blob, 4)) for blob in package.blobs)),
+        "page": format_bytes(len(text)),
+    }
+    return ExportReport((str(order.output),), package.notes, figures)
+
+
+def make_page(package: Package, order: ExportOrder) -> str:
+    """The page as text."""
+    assets = resources.files(__package__ or "") / "assets"
+    document = package.document
+    programs = [
+        {"fragment": write_es300(fragment), "vertex": write_es300(vertex) if vertex else ""}
+        for fragment, vertex in package.programs
+    ]
+    strides = _find_strides(package)
+    content = json.dumps({"document": document, "programs": programs, "notes": list(package.notes)})
+    packed = {
+        "content": b64encode(zlib.compress(content.encode(), 9)).decode(),
+        "blobs": [[strides[at], _pack(blob, strides[at])] for at, blob in enumerate(package.blobs)],
+    }
+    reader = (assets / "read_package.js").read_text("utf-8").replace("export ", "")
+    filled = {
+        "TITLE": html.escape(order.name.replace("_", " ").capitalize()),
+        "ABOUT": html.escape(find_about(order.graph).doc),
+        "GENERATOR": f"Made by {document['made_by']}",
+        "PACKAGE": json.dumps(packed, separators=(",", ":")),
+        "SCRIPT": f"{reader}\n{(assets / 'page.js').read_text('utf-8')}",
+    }
+    text = (assets / "page.html").read_text("utf-8")
+    for name, part in filled.items():
+        text = text.replace(f"/*{name}*/", part)
+    return text
+
+
+def _find_strides(package: Package) -> list[int]:
+    """The bytes of a number in each blob: bytes of equal weight side by side compress better."""
+    strides = [4] * len(package.blobs)
+    for source in package.document["sources"]:
+        strides[source["blob"]] = 2 if source["format"].endswith("16f") else 4
+    return strides
+
+
+def _pack(blob: bytes, stride: int) -> str:
+    """Pixels as text: one plane for each byte of a number, compressed."""
+    planes = b"".join(blob[at::stride] for at in range(stride))
+    return b64encode(zlib.compress(planes, 9)).decode()

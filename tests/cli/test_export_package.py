@@ -1,0 +1,199 @@
+"""halation export --to glsl and --to web: packages of passes."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+import zlib
+from base64 import b64decode
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import RED
+from exr_files import read
+from halation import document
+from halation.compiler import Plan, Request, compile_graph
+from halation.export.package.curves import read_slot, simplify
+from halation.export.package.dialects import COVERING_VERTEX, DIALECTS
+from halation.export.package.planning import TARGET
+from halation.inputs.provider import MediaProvider
+from halation.presets import paths
+from halation.resources.sandbox import UNRESTRICTED
+from isf_files import IMAGE, isf
+from scipy.interpolate import RegularGridInterpolator
+
+VALIDATOR = shutil.which("glslangValidator")
+LOOK = {
+    "nodes": {
+        "glow": {"type": "bloom", "values": {"radius": 0.1}},
+        "tone": {"type": "saturation", "values": {"saturation": 1.0}},
+        "grain": {"type": "film_grain", "values": {"amount": 0.1}},
+    },
+    "links": {
+        "glow.image": "light.out",
+        "tone.image": "glow.out",
+        "grain.image": "tone.out",
+        "outputs.image": "grain.out",
+    },
+    "controls": {
+        "stops": {"target": "light.stops"},
+        "glow": {"target": "glow.intensity"},
+        "size": {"target": "glow.radius"},
+        "color": {"target": "tone.saturation", "label": "Color"},
+    },
+}
+
+
+@pytest.fixture
+def folder(cli, graphs, tmp_path: Path) -> Path:
+    """A package of `LOOK`."""
+    result = cli("export", graphs(**LOOK), "--to", "glsl", "-o", tmp_path / "look", "--json")
+    assert result.code == 0 and result.json["controls"] == 4, result.err
+    return tmp_path / "look"
+
+
+def read_package(folder: Path, *words: str) -> np.ndarray:
+    """The picture that the reader in the folder makes, run as a user runs it."""
+    out = folder / "out.npy"
+    subprocess.run([sys.executable, folder / "read_package.py", folder, out, *words], check=True, timeout=100)
+    return np.load(out)
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [{}, {"stops": 2.5, "color": 0.3}, {"size": 0.31, "glow": 0.7}, {"color": 1.7, "frame": 7}],
+    ids=["at rest", "numbers", "other passes", "another frame"],
+)
+def test_the_reader_in_the_folder_gives_our_pixels(cli, graphs, folder: Path, tmp_path: Path, settings) -> None:
+    words = [f"--{'frame' if name == 'frame' else 'set'}={number if name == 'frame' else f'{name}={number}'}"
+             for name, number in settings.items()]  # fmt: skip
+    out = tmp_path / "ours.exr"
+    assert cli("render", graphs(**LOOK), "-o", out, "--precision", "float", *words).code == 0
+    ours = read(out)
+    theirs = read_package(folder, *(f"{name}={number}" for name, number in settings.items()))
+    assert np.abs(theirs - ours).max() <= 2e-3 * np.abs(ours).max()
+
+
+def test_a_package_remembers_frames(cli, graphs, tmp_path: Path) -> None:
+    """Feedback: the first frame has a plan of its own, and the fourth one is made of all before it."""
+    nodes = {"back": {"type": "feedback"}}
+    graph = graphs(
+        nodes=nodes, links={"back.image": "light.out", "outputs.image": "back.out"}, settings={"frames": [1, 5]}
+    )
+    assert cli("export", graph, "--to", "glsl", "-o", tmp_path / "look").code == 0
+    plans = json.loads((tmp_path / "look/passes.json").read_text())["plans"]
+    assert len(plans) == 2 and plans[1][0]["memories"]
+    assert cli("render", graph, "-o", tmp_path / "a.exr", "--frame", 4, "--precision", "float").code == 0
+    ours = read(tmp_path / "a.exr")
+    assert np.abs(read_package(tmp_path / "look", "frame=4") - ours).max() <= 2e-3 * np.abs(ours).max()
+
+
+def test_what_a_package_says(folder: Path) -> None:
+    package = json.loads((folder / "passes.json").read_text())
+    controls = {control["name"]: control for control in package["controls"]}
+    assert controls["color"]["label"] == "Color" and controls["color"]["knobs"][0]["rest"] == 1.0
+    assert controls["size"]["kind"] == "slider" and package["axes"][0]["knob"] == "size"
+    assert {name.name for name in folder.iterdir()} >= {*DIALECTS, "README.md", "read_package.js", "pixels"}
+    assert len((folder / "read_package.py").read_text().splitlines()) <= 200
+    for plan in package["plans"][0]:
+        made = {number for each in plan["passes"] for number in each["targets"]}
+        read_first = {number for each in plan["passes"] for number in each["textures"]} - made
+        assert all("source" in plan["surfaces"][number] for number in read_first) and plan["output"] in made
+
+
+def validate(texts: dict[str, str], folder: Path, *words: str) -> list[str]:
+    """What the reference compiler of Khronos finds wrong with shaders by file name."""
+    assert VALIDATOR is not None
+    for name, text in texts.items():
+        (folder / name).write_text(text)
+    command = [VALIDATOR, *words, *sorted(str(folder / name) for name in texts)]
+    said = subprocess.run(command, capture_output=True, text=True, cwd=folder).stdout
+    return [line for line in said.splitlines() if line.startswith("ERROR")]
+
+
+def plan_presets() -> list[Plan]:
+    pictures = MediaProvider(sandbox=UNRESTRICTED)
+    return [
+        compile_graph(document.load(path, sandbox=UNRESTRICTED), Request(), pictures, target=TARGET) for path in paths()
+    ]
+
+
+@pytest.mark.skipif(VALIDATOR is None, reason="glslangValidator is not installed")
+@pytest.mark.parametrize("dialect", ["glsl410", "es300", "vulkan450"])
+def test_the_reference_compiler_takes_the_programs_of_all_presets(dialect: str, tmp_path: Path) -> None:
+    """It checks GLSL 3.30 too, but with the rules of later versions, so a driver tries those: see the readers."""
+    write, words = DIALECTS[dialect], ("-V", "--no-link") if dialect == "vulkan450" else ()
+    texts = {"cover.vert": write(COVERING_VERTEX)}
+    sources = {(each.shader.source, each.shader.vertex) for plan in plan_presets() for each in plan.passes}
+    for number, (fragment, vertex) in enumerate(sorted(sources)):
+        texts[f"{number}.frag"] = write(fragment)
+        if vertex:
+            texts[f"{number}.vert"] = write(vertex)
+    assert len(texts) > 150
+    assert not validate(texts, tmp_path, *words)
+
+
+def open_page(text: str) -> tuple[dict, list[bytes]]:
+    """The content of a page and its pixels."""
+    packed = json.loads(text.partition('<script id="package" type="application/json">')[2].partition("</script>")[0])
+    content = json.loads(zlib.decompress(b64decode(packed["content"])))
+    blobs = []
+    for stride, blob in packed["blobs"]:
+        planes = np.frombuffer(zlib.decompress(b64decode(blob)), np.uint8)
+        blobs.append(planes.reshape(stride, -1).T.tobytes())
+    return content, blobs
+
+
+def test_a_page_holds_everything(cli, graphs, tmp_path: Path) -> None:
+    page = tmp_path / "look.html"
+    figures = cli("export", graphs(**LOOK), "-o", page, "--json").json
+    text = page.read_text()
+    content, blobs = open_page(text)
+    assert "http:" not in text and "https:" not in text and "import " not in text.replace("!important", "")
+    assert figures["controls"] == 4 and len(text) < 200_000
+    (source,) = content["document"]["sources"]
+    width, height = source["size"]
+    pixels = np.frombuffer(blobs[source["blob"]], np.float16).reshape(height, width, 4)
+    np.testing.assert_array_equal(pixels[..., 0], np.broadcast_to(RED.astype(np.float16), pixels.shape[:2]))
+    assert pixels[0, -1].tolist() == [1.0, 0.25, 0.5, 1.0] and source["is_input"]
+    assert all(program["fragment"].startswith("#version 300 es") for program in content["programs"])
+
+
+def test_a_shader_of_another_format_is_refused(cli, graphs, tmp_path: Path) -> None:
+    (tmp_path / "a.fs").write_text(isf("gl_FragColor = IMG_THIS_PIXEL(inputImage);", IMAGE))
+    graph = graphs(
+        nodes={"odd": {"type": "isf", "file": "a.fs"}},
+        links={"odd.inputImage": "light.out", "outputs.image": "odd.out"},
+    )
+    for words in (("-o", tmp_path / "no.html"), ("--to", "glsl", "-o", tmp_path / "no")):
+        result = cli("export", graph, *words)
+        assert result.code == 3 and "node 'odd' is a shader of another format" in result.err
+        assert not words[-1].exists()
+
+
+def test_curves_are_polygons_and_grids_are_bilinear() -> None:
+    """Against numpy and scipy."""
+    random = np.random.default_rng(3)
+    xs, ys = np.sort(random.random(7)), np.sort(random.random(5))
+    rows, values = random.random((7, 2)), random.random((7, 5, 2))
+    curve = {"knob": "a", "at": xs.tolist(), "values": rows.tolist()}
+    grid = {"knobs": ["a", "b"], "at": [xs.tolist(), ys.tolist()], "values": values.tolist()}
+    interpolator = RegularGridInterpolator((xs, ys), values)
+    for share in (0.0, 0.3, 0.77, 1.0):
+        x, y = xs[0] + share * (xs[-1] - xs[0]), ys[-1] - share * (ys[-1] - ys[0])
+        line = [np.interp(x, xs, column) for column in rows.T]
+        found = read_slot({"base": [1.0, 2.0], "curves": [curve], "grids": [grid]}, {"a": x, "b": y})
+        np.testing.assert_allclose(found, line + interpolator([[x, y]])[0], rtol=1e-6)
+        many = {"base": [2.0, 0.0], "curves": [curve, {**curve, "knob": "b"}], "mode": "multiply"}
+        twice = read_slot(many, {"a": x, "b": x})
+        np.testing.assert_allclose(twice, [line[0] * line[0] / 2.0, 2.0 * line[1]], rtol=1e-6)
+
+
+def test_a_polygon_is_simplified_without_loss() -> None:
+    xs = np.linspace(0.0, 1.0, 65)
+    bent = np.stack([np.maximum(xs - 0.5, 0.0), 3.0 * xs], axis=1)
+    assert simplify(xs, bent) == [0, 32, 64]
+    assert len(simplify(xs, (xs**2)[:, None])) > 30
