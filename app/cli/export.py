@@ -69,8 +69,8 @@ def export(
 ) -> int:
     """Write a graph in the format of another program.
 
-    Writes pages for browsers, shaders and tables of colors. Where a node cannot be part of the format, the command names it with the
-    reason.
+    Writes pages for browsers, shaders and tables of colors. Where a node cannot be part of the format, the command
+    names it with the reason.
     """
     from ..errors import UsageError
     from ..export import ExportOrder, choose_kind

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from importlib import resources
 from pathlib import Path
 from types import MappingProxyType
 
@@ -13,6 +12,7 @@ from ..resources.atomic_write import write_bytes_atomically, write_text_atomical
 from .order import ExportOrder, ExportReport
 from .package import Package, assemble_package
 from .package.dialects import COVERING_VERTEX, DIALECTS
+from .shipped_files import read_shipped_text
 
 READERS: Mapping[str, str] = MappingProxyType(
     {"read_package.py": "read_package.py.txt", "read_package.js": "read_package.js", "README.md": "package_readme.md"}
@@ -51,8 +51,7 @@ def list_texts(package: Package) -> dict[str, str]:
             texts[f"{dialect}/{number}.frag"] = write(fragment)
             if vertex:
                 texts[f"{dialect}/{number}.vert"] = write(vertex)
-    assets = resources.files(__package__ or "") / "assets"
-    return texts | {name: (assets / asset).read_text("utf-8") for name, asset in READERS.items()}
+    return texts | {name: read_shipped_text(asset) for name, asset in READERS.items()}
 
 
 def _make_folder(folder: Path) -> None:

@@ -6,7 +6,6 @@ import html
 import json
 import zlib
 from base64 import b64encode
-from importlib import resources
 
 from ..compiler.explain import format_bytes
 from ..document.about import find_about
@@ -14,6 +13,7 @@ from ..resources.atomic_write import write_text_atomically
 from .order import ExportOrder, ExportReport
 from .package import Package, assemble_package
 from .package.dialects import write_es300
+from .shipped_files import read_shipped_text
 
 
 def export_page(order: ExportOrder) -> ExportReport:
@@ -36,7 +36,6 @@ def export_page(order: ExportOrder) -> ExportReport:
 
 def make_page(package: Package, order: ExportOrder) -> str:
     """The page as text."""
-    assets = resources.files(__package__ or "") / "assets"
     document = package.document
     programs = [
         {"fragment": write_es300(fragment), "vertex": write_es300(vertex) if vertex else ""}
@@ -48,15 +47,15 @@ def make_page(package: Package, order: ExportOrder) -> str:
         "content": b64encode(zlib.compress(content.encode(), 9)).decode(),
         "blobs": [[strides[at], _pack(blob, strides[at])] for at, blob in enumerate(package.blobs)],
     }
-    reader = (assets / "read_package.js").read_text("utf-8").replace("export ", "")
+    reader = read_shipped_text("read_package.js").replace("export ", "")
     filled = {
         "TITLE": html.escape(order.name.replace("_", " ").capitalize()),
         "ABOUT": html.escape(find_about(order.graph).doc),
         "GENERATOR": f"Made by {document['made_by']}",
         "PACKAGE": json.dumps(packed, separators=(",", ":")),
-        "SCRIPT": f"{reader}\n{(assets / 'page.js').read_text('utf-8')}",
+        "SCRIPT": f"{reader}\n{read_shipped_text('page.js')}",
     }
-    text = (assets / "page.html").read_text("utf-8")
+    text = read_shipped_text("page.html")
     for name, part in filled.items():
         text = text.replace(f"/*{name}*/", part)
     return text

@@ -12,7 +12,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import RED
 from exr_files import read
 from halation import document
 from halation.compiler import Plan, Request, compile_graph
@@ -157,7 +156,8 @@ def test_a_page_holds_everything(cli, graphs, tmp_path: Path) -> None:
     (source,) = content["document"]["sources"]
     width, height = source["size"]
     pixels = np.frombuffer(blobs[source["blob"]], np.float16).reshape(height, width, 4)
-    np.testing.assert_array_equal(pixels[..., 0], np.broadcast_to(RED.astype(np.float16), pixels.shape[:2]))
+    rising = np.linspace(0.0, 1.0, width, dtype=np.float32).astype(np.float16)
+    np.testing.assert_array_equal(pixels[..., 0], np.broadcast_to(rising, pixels.shape[:2]))
     assert pixels[0, -1].tolist() == [1.0, 0.25, 0.5, 1.0] and source["is_input"]
     assert all(program["fragment"].startswith("#version 300 es") for program in content["programs"])
 

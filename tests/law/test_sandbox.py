@@ -40,6 +40,7 @@ OPENERS = {
     "cli/__init__.py": "the null device, in place of a stream that is closed",
     "cli/serve.py": "a copy of standard output, for replies alone",
     "serving/service.py": "a thumbnail that it has just written to a temporary folder",
+    "export/shipped_files.py": "texts of Halation that exports copy",
     "cli/demo.py": "samples of Halation, copied to where the user says",
     "cli/git_setup.py": "the configuration of git",
     "cli/outcome.py": "the null device, in place of a stream that is closed",
