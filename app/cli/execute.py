@@ -20,6 +20,7 @@ from .execute_batch import check_first_entry, execute_batch
 from .job_setup import (
     choose_frames,
     describe_costs,
+    has_independent_frames,
     make_output_settings,
     make_request,
     open_job_renderer,
@@ -117,28 +118,13 @@ def _split_among_helpers(
     time limit of their own."""
     from msgspec.structs import replace
 
-    if min(job.processes, len(job.frames)) > 1 and _is_independent(job, graph, targets):
+    if min(job.processes, len(job.frames)) > 1 and has_independent_frames(job, graph, targets):
         parts = [part for start in range(job.processes) if (part := job.frames[start :: job.processes])]
     elif is_watched:
         parts = [job.frames]
     else:
         return []
     return [replace(job, frames=part, processes=1, timeout=0.0) for part in parts]
-
-
-def _is_independent(job: RenderJob, graph: Graph, targets: Mapping[str, Port]) -> bool:
-    """True if each frame can be rendered without the frames before it. Raises HalationError."""
-    from ..compiler import Request, compile_graph
-    from ..inputs.lazy_provider import LazyResourceProvider
-
-    if graph.settings.preroll is not None:
-        return True
-    provider = LazyResourceProvider(job.sandbox)
-    plan = compile_graph(graph, Request(targets, provider.bind(graph, job.inputs), frame=job.frames[0]), provider)
-    for node in plan.remembering:
-        print_note(f"one process renders all frames: node '{node}' needs the frame before each")
-        break
-    return not plan.memories
 
 
 def _render_here(

@@ -71,6 +71,21 @@ def choose_frames(job: RenderJob, graph: Graph, inputs: Mapping[str, str]) -> tu
     return list_range(first, last) if parsing.have_frame_number(job.files) else (first,)
 
 
+def has_independent_frames(job: RenderJob, graph: Graph, targets: Mapping[str, Port]) -> bool:
+    """True if each frame can be rendered without the frames before it. Raises HalationError."""
+    from ..compiler import Request, compile_graph
+    from ..inputs.lazy_provider import LazyResourceProvider
+
+    if graph.settings.preroll is not None:
+        return True
+    provider = LazyResourceProvider(job.sandbox)
+    plan = compile_graph(graph, Request(targets, provider.bind(graph, job.inputs), frame=job.frames[0]), provider)
+    for node in plan.remembering:
+        print_note(f"one process renders all frames: node '{node}' needs the frame before each")
+        break
+    return not plan.memories
+
+
 def describe_costs(report: JobReport, device: str) -> dict[str, Any]:
     """What every report of a job has, ready for JSON."""
     return {

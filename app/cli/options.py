@@ -49,6 +49,9 @@ Scale = Annotated[
         "--scale", metavar="X", help="Render a smaller proxy: 0.5 is half the size, and lengths in pixels shrink too."
     ),
 ]
+Outputs = typer.Option(
+    "-o", "--output", metavar="[NAME=]FILE", help="The file to write; an .exr holds all outputs as layers."
+)
 View = Annotated[
     str, typer.Option(help="OpenColorIO view of PNG, JPEG, TIFF, WebP and DPX files; 'none' for plain sRGB.")
 ]

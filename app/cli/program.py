@@ -23,6 +23,7 @@ from .outcome import EXIT_CODES, catch_faults, flush_output, report_failure
 _VISIBLE = (
     "edit",
     "render",
+    "submit",
     "serve",
     "check",
     "explain",

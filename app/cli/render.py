@@ -20,6 +20,7 @@ from .options import (
     Memory,
     Node,
     OneFrame,
+    Outputs,
     Precision,
     Scale,
     Sets,
@@ -37,9 +38,7 @@ def render(
     graph: GraphFile,
     output: Annotated[
         list[str] | None,
-        typer.Option(
-            "-o", "--output", metavar="[NAME=]FILE", help="The file to write; an .exr holds all outputs as layers."
-        ),
+        Outputs,
     ] = None,
     each: Annotated[
         list[str] | None,

@@ -20,6 +20,7 @@ from .options import (
     Inputs,
     Node,
     OneFrame,
+    Outputs,
     Precision,
     Scale,
     Sets,
@@ -45,7 +46,8 @@ _LISTED = 3
 def watch(
     graph: GraphFile,
     output: Annotated[
-        list[str], typer.Option("-o", "--output", metavar="[NAME=]FILE", help="The file to write, as for render.")
+        list[str],
+        Outputs,
     ],
     inputs: Inputs = None,
     sets: Sets = None,

@@ -196,6 +196,7 @@ def test_a_job_carries_its_root(yard):
 
 OUTSIDE: dict[str, tuple[object, ...]] = {
     "render": ("{out}/group.json", "-o", "{fence}/a.png"),
+    "submit": ("{out}/group.json", "-o", "{fence}/a.png", "--slurm", "{fence}/job.sh"),
     "serve": ("--socket", "{out}/server"),
     "check": ("{out}/group.json",),
     "explain": ("{out}/group.json",),
