@@ -7,6 +7,7 @@ import os
 import re
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -99,8 +100,7 @@ def test_a_script_of_slurm_is_clean_and_renders(cli, shot_folder):
 def test_the_command_of_a_workflow_renders(cli, shot_folder):
     assert submit(cli, "-o", "out/f.####.exr", "--actions", "flow.yml").code == 0
     text = (shot_folder / "flow.yml").read_text()
-    yaml = pytest.importorskip("yaml")  # a requirement of openjd-cli
-    workflow = yaml.safe_load(text)
+    workflow = import_module("yaml").safe_load(text)  # which has no types
     (job,) = workflow["jobs"].values()
     assert workflow[True if True in workflow else "on"] == ["workflow_dispatch"]
     assert job["strategy"]["matrix"]["frames"] == ["1-3", "4"]
