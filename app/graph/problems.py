@@ -250,8 +250,9 @@ def _ends(graph: Graph) -> Iterator[Problem]:
 
 def _control_fault(graph: Graph, name: str, target: Port) -> str | None:
     try:
-        face = signature(graph.node(target.node))
-        if not face.anything:
+        item = graph.node(target.node)
+        face = signature(item)
+        if not face.anything and find_setting(item, target.socket) is None:
             pick(face.values, target.socket, f"node '{target.node}' has no value")
     except GraphError as error:
         return f"control '{name}' points at '{target}': {error}"

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from halation.document.reading import loads
 from halation.document.writing import dumps
 from halation.errors import HalationError
-from halation.graph import Graph, Key, Keys, Port, evaluate_at_frame
+from halation.graph import Control, Graph, Key, Keys, Output, Port, evaluate_at_frame, problems
+from halation.graph.rules import BAD_CONTROL
 from halation.nodes import (
     ROTO_SHAPES,
+    Kind,
     RotoShape,
     insert_point,
     join_points,
@@ -173,3 +177,12 @@ def test_a_point_is_inserted_without_a_change_of_the_outline(run, index):
     points = insert_point(split_points(outline.points), index, 0.3)
     assert len(points) == 5
     np.testing.assert_allclose(mask_of(run, RotoShape(points=join_points(points))), mask_of(run, outline), atol=2e-3)
+
+
+def test_a_control_can_turn_a_field_of_a_shape():
+    graph = Graph().add("roto", Roto()).add_output("mask", Output(Kind.FIELD))
+    graph = graph.connect(Port("roto", "mask"), Port("outputs", "mask"))
+    graph = replace(graph, controls={"edge": Control(Port("roto", "shapes.shape_1.feather"))})
+    assert not [problem for problem in problems(graph) if problem.rule is BAD_CONTROL]
+    graph = replace(graph, controls={"edge": Control(Port("roto", "shapes.shape_2.feather"))})
+    assert [problem.sentence for problem in problems(graph) if problem.rule is BAD_CONTROL]
