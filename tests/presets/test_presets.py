@@ -16,7 +16,8 @@ import cv2
 import numpy as np
 import pytest
 from halation import document, media
-from halation.graph import Control, Graph, Group, problems, signature
+from halation.graph import Control, Graph, problems
+from halation.graph.graph import find_setting
 from halation.media.comparison.contact_sheet import make_sheet, show_light
 from halation.nodes import Kind
 from halation.presets import paths
@@ -198,9 +199,9 @@ def test_the_canvas_has_a_place_for_everything(name: str) -> None:
 
 def ends(graph: Graph, item: Control) -> tuple[object, ...]:
     """Both ends of a control, or another color, place or curve."""
-    owner = graph.nodes[item.target.node]
-    value = signature(owner).values[item.target.socket]
-    now = value.default if isinstance(owner, Group) else getattr(owner, item.target.socket)
+    value = find_setting(graph.nodes[item.target.node], item.target.socket)
+    assert value is not None
+    now = value.default
     if isinstance(now, tuple):
         return (tuple(0.6 * part + 0.02 for part in now),)
     return type(now)(value.low), type(now)(value.high)
