@@ -25,6 +25,7 @@ struct AreaLight { int kind; vec3 middle, along, across, deep, radiance; float a
 // and `from` and `to` the ends of the last edge above it.
 struct AreaSum { vec3 last, entry, leave, from, to, total; bool enters, leaves; };
 
+// The frames of a surface point in which light is integrated: that of matte and that of shiny reflection.
 AreaSurface area_surface(vec3 normal, vec3 view, float nv, float roughness) {
     vec3 side = view - normal * dot(normal, view);
     if (dot(side, side) < 1e-10) side = abs(normal.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0);
@@ -77,6 +78,7 @@ vec3 area_edge(vec3 from, vec3 to) {
     return angle * scale * cross(from, to - from);
 }
 
+// The start of a walk around the edges of a lamp, at one of its corners.
 AreaSum area_begin(vec3 corner) {
     const vec3 none = vec3(0.0);
     return AreaSum(corner, none, none, none, none, none, false, false);
