@@ -103,6 +103,23 @@ def test_what_a_package_says(folder: Path) -> None:
         assert all("source" in plan["surfaces"][number] for number in read_first) and plan["output"] in made
 
 
+def test_a_control_is_held_with_all_its_parts(cli, graphs, tmp_path: Path) -> None:
+    """Both sides of the squares change passes, in more ways than a package holds: then no plan may ask for either."""
+    graph = graphs(
+        nodes={"squares": {"type": "pixelate", "values": {"size": [16.0, 16.0]}}},
+        links={"squares.image": "light.out", "outputs.image": "squares.out"},
+        controls={"squares": {"target": "squares.size"}, "frame": {"target": "light.stops"}},
+    )
+    assert cli("export", graph, "--to", "glsl", "-o", tmp_path / "look").code == 0
+    package = json.loads((tmp_path / "look/passes.json").read_text())
+    offered = {knob["name"] for control in package["controls"] for knob in control["knobs"]} | {"frame"}
+    asked = {axis["knob"] for axis in package["axes"]}
+    asked |= {curve["knob"] for slot in package["slots"] for curve in slot.get("curves", ())}
+    assert asked <= offered and "frame.0" in offered
+    assert cli("render", graph, "-o", tmp_path / "a.exr", "--precision", "float").code == 0
+    np.testing.assert_allclose(read_package(tmp_path / "look"), read(tmp_path / "a.exr"), atol=2e-3)
+
+
 def validate(texts: dict[str, str], folder: Path, *words: str) -> list[str]:
     """What the reference compiler of Khronos finds wrong with shaders by file name."""
     assert VALIDATOR is not None

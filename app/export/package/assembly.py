@@ -13,7 +13,7 @@ from ...version import VERSION
 from ..order import ExportOrder
 from .curves import PairSamples, Record, find_needed_places
 from .display import write_display_program
-from .knobs import FRAME, Knob, PackageControl, Point
+from .knobs import FRAME, Knob, PackageControl, Point, find_control_name
 from .parts import SharedParts, VariantSamples
 from .planning import OUTPUT, Phase, PointPlanner
 from .sampling import Sample, is_number_table
@@ -61,12 +61,13 @@ class _Assembly:
         self.samples = {knob.name: planner.sample_knob(knob, base, phases[-1]) for knob in knobs}
         found_axes = (find_axis(knob.name, base[knob.name], self.samples[knob.name]) for knob in knobs)
         axes, held_axes = choose_axes([axis for axis in found_axes if axis])
-        held_names = {axis.knob for axis in held_axes}
-        knobs = [knob for knob in knobs if knob.name not in held_names]
+        held_names = {find_control_name(axis.knob) for axis in held_axes}
+        axes = [axis for axis in axes if find_control_name(axis.knob) not in held_names]
+        knobs = [knob for knob in knobs if find_control_name(knob.name) not in held_names]
         opening_knobs = [knob for knob in knobs if knob.name != FRAME] if len(phases) > 1 else knobs
         plans = [self._write_plans(axes, opening_knobs, {**base, FRAME: float(first)}, phases[0])]
         plans += [self._write_plans(axes, knobs, base, phase) for phase in phases[1:]]
-        document = self._write_head((first, first if FRAME in held_names else last), axes, held_names)
+        document = self._write_head((first, first if FRAME in held_names else last), axes)
         document |= self._write_display(opening)
         document |= {"slots": self.parts.slots, "plans": plans}
         notes = (*planner.notes, *_describe_held(held_axes), *self._describe_poor())
@@ -136,14 +137,10 @@ class _Assembly:
         memories = {str(port): keys[memory.key] for port, memory in plan.memories.items() if memory.key in keys}
         return {"surfaces": surfaces, "passes": passes, "output": plan.outputs[OUTPUT], "memories": memories}
 
-    def _write_head(self, frames: tuple[int, int], axes: Sequence[VariantAxis], held_names: set[str]) -> Record:
+    def _write_head(self, frames: tuple[int, int], axes: Sequence[VariantAxis]) -> Record:
         used_knobs = {curve["knob"] for record in self.parts.slots for curve in record.get("curves", ())}
         used_knobs |= {axis.knob for axis in axes}
-        controls = [
-            control
-            for control in self.planner.controls
-            if (names := {knob.name for knob in control.knobs}) & used_knobs and not names & held_names
-        ]
+        controls = [control for control in self.planner.controls if {knob.name for knob in control.knobs} & used_knobs]
         if FRAME not in used_knobs and not self.planner.remembers:
             frames = frames[0], frames[0]
         return {
@@ -164,7 +161,7 @@ class _Assembly:
         return {"display": {"program": program, "view": view, "tables": [self.parts.add_table(t) for t in tables]}}
 
     def _describe_poor(self) -> list[str]:
-        names = sorted({name.partition(".")[0] for name in self.parts.poor_knobs})
+        names = sorted(set(map(find_control_name, self.parts.poor_knobs)))
         if not names:
             return []
         return [f"controls {', '.join(names)} change the same numbers: where both are moved far, the look may differ"]
@@ -183,9 +180,9 @@ def _describe_held(axes: Sequence[VariantAxis]) -> list[str]:
     """A sentence on each knob that keeps its value."""
     return [
         "it shows one frame: other frames need other passes"
-        if axis.knob == FRAME
-        else f"control '{axis.knob.partition('.')[0]}' keeps its value: it changes passes, as others do already"
-        for axis in axes
+        if name == FRAME
+        else f"control '{name}' keeps its value: it changes passes, as others do already"
+        for name in dict.fromkeys(find_control_name(axis.knob) for axis in axes)
     ]
 
 

@@ -57,6 +57,11 @@ class PackageControl(Struct, frozen=True):
         return {"bool": bool, "int": round}.get(self.value.type, float)(parts[0])
 
 
+def find_control_name(knob: str) -> str:
+    """The control that a knob belongs to; of the frame, its own name."""
+    return knob.partition(".")[0]
+
+
 def find_controls(graph: Graph) -> tuple[list[PackageControl], list[str]]:
     """The controls that can be changed in a package, and a sentence on each of the others."""
     controls, notes = list[PackageControl](), list[str]()
@@ -79,6 +84,7 @@ def find_controls(graph: Graph) -> tuple[list[PackageControl], list[str]]:
 
 
 def _make_knobs(name: str, value: Value, rest: object) -> tuple[Knob, ...]:
+    name = f"{name}.0" if name == FRAME else name
     if value.type == "choice":
         return (Knob(name, float(value.choices.index(str(rest))), 0.0, len(value.choices) - 1.0, is_whole=True),)
     parts = [float(part) for part in (rest if isinstance(rest, tuple) else (rest,))]  # pyright: ignore
