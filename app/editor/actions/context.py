@@ -33,6 +33,7 @@ class EditContext:
 class ViewSettingsContext:
     """The collaborators of the View and Help menus."""
 
+    session: Session
     store: PreferenceStore
     dialogs: Dialogs
     commands: WindowCommands
@@ -40,4 +41,4 @@ class ViewSettingsContext:
     @classmethod
     def compose(cls, services: Services) -> ViewSettingsContext:
         """Pick what the actions use."""
-        return cls(services.store, services.dialogs, services.commands)
+        return cls(services.session, services.store, services.dialogs, services.commands)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
+from ...graph import Unknown
 from ..shared.action import Action
 from ..shared.window_commands import LayoutName, PanelTitle
 from ..theme.style import ui_scale
@@ -23,6 +24,11 @@ def _toggle(name: str) -> Callable[[ViewSettingsContext], object]:
 
 def _is_shown(name: str) -> Callable[[ViewSettingsContext], bool]:
     return lambda context: bool(getattr(context.store.current, name))
+
+
+def _has_active_node(context: ViewSettingsContext) -> bool:
+    item = context.session.graph.nodes.get(context.session.active)
+    return item is not None and not isinstance(item, Unknown)
 
 
 def _theme(context: ViewSettingsContext) -> None:
@@ -120,5 +126,14 @@ VIEW: tuple[Action[ViewSettingsContext], ...] = (
     Action("view.screenshot", "Save a Screenshot...", lambda context: context.commands.save_screenshot(), "View"),
     Action("help.palette", "Command Palette...", lambda context: context.dialogs.open.add("palette"), "Help", "Ctrl+P"),
     Action("help.shortcuts", "Shortcuts", lambda context: context.dialogs.toggle("shortcuts"), "Help", "F1"),
+    Action(
+        "help.node",
+        "About the Node",
+        lambda context: context.dialogs.open.add("node"),
+        "Help",
+        "Shift+F1",
+        enabled=_has_active_node,
+        doc="What the selected node does, and all of its sockets and values.",
+    ),
     Action("help.about", "About Halation", lambda context: context.dialogs.open.add("about"), "Help"),
 )

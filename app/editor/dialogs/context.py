@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 from ..toolkit.context import PanelContext
 
 if TYPE_CHECKING:
+    from ...authoring.preview import Preview
+    from ...authoring.session import Session
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import SystemText
@@ -18,6 +20,8 @@ if TYPE_CHECKING:
 class DialogContext(PanelContext):
     """The collaborators of the small dialogs."""
 
+    session: Session
+    preview: Preview
     dialogs: Dialogs
     actions: Actions
     clipboard: SystemText
@@ -25,4 +29,12 @@ class DialogContext(PanelContext):
     @classmethod
     def compose(cls, services: Services) -> DialogContext:
         """Pick what the panel uses."""
-        return cls(services.interface, services.log, services.dialogs, services.actions, services.clipboard)
+        return cls(
+            services.interface,
+            services.log,
+            services.session,
+            services.preview,
+            services.dialogs,
+            services.actions,
+            services.clipboard,
+        )

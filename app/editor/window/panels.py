@@ -13,6 +13,7 @@ from ..command_palette.palette import CommandPalette
 from ..curves.panel import AnimationPanel
 from ..dialogs.about import AboutDialog
 from ..dialogs.cheat_sheet import CheatSheet
+from ..dialogs.node_page import NodePage
 from ..dialogs.question import QuestionDialog
 from ..history.panel import HistoryPanel
 from ..inspector.inspector import Inspector
@@ -63,6 +64,7 @@ OVERLAYS: tuple[tuple[str, Callable[[Contexts], Panel]], ...] = (
     ("Tutorial", lambda contexts: Coach(contexts.tutorials)),
     ("Start", lambda contexts: StartScreen(contexts.start)),
     ("Shortcuts", lambda contexts: CheatSheet(contexts.dialogs)),
+    ("Node", lambda contexts: NodePage(contexts.dialogs)),
     ("Preferences", lambda contexts: PreferencesDialog(contexts.preferences)),
     ("Save as preset", lambda contexts: PresetDialog(contexts.presets)),
     ("Command palette", lambda contexts: CommandPalette(contexts.command_palette)),

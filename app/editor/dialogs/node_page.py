@@ -1,0 +1,130 @@
+"""The page of a node: what it does, its pictures before and after, and all of its sockets and values.
+
+Everything on it comes from the declaration of the node, as docs/nodes.md does, so that no page is missing or out of
+date; the pictures are those of the graph that is open.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from halation.nodes import Node
+from imgui_bundle import ImVec2, imgui
+
+from ...authoring.preview.preview import Preview
+from ...graph import INPUTS, Graph, Port, Unknown, signature
+from ..fields.numbers import describe_default, describe_value
+from ..theme.style import ui_scale, vec4
+from ..toolkit.buttons import close_button
+from ..toolkit.dialogs import backdrop, dialog, escape_pressed
+from ..toolkit.words import draw_dim, draw_wrapped, font
+
+if TYPE_CHECKING:
+    from ...graph import Item, Signature
+    from .context import DialogContext
+
+_SIZE = 760.0, 680.0
+_PICTURE = 320.0
+_NAMES = 150.0
+
+
+class NodePage:
+    """The page of the active node."""
+
+    def __init__(self, context: DialogContext) -> None:
+        self._context = context
+
+    def draw(self) -> None:
+        """Draw the page, if it is open."""
+        session = self._context.session
+        if "node" not in self._context.dialogs.open:
+            return
+        item = session.graph.nodes.get(session.active)
+        close = backdrop(self._context, "node") or item is None or isinstance(item, Unknown)
+        with dialog(self._context, "Node", _SIZE):
+            if item is not None and not isinstance(item, Unknown):
+                self._draw_page(str(session.active), item)
+            close = close_button(self._context, "close node") or close or escape_pressed()
+        if close:
+            self._context.dialogs.open.discard("node")
+
+    def _draw_page(self, id: str, item: Item) -> None:
+        palette, face = self._context.palette, signature(item)
+        with font(self._context, "bold", 20.0):
+            imgui.text_unformatted(item.title.capitalize() if isinstance(item, Node) else id)
+        height = imgui.get_content_region_avail().y - imgui.get_frame_height_with_spacing()
+        imgui.begin_child("page", ImVec2(0, height), imgui.ChildFlags_.nav_flattened.value)
+        for paragraph in read_paragraphs(item):
+            draw_wrapped(palette.text, paragraph)
+            imgui.spacing()
+        self._draw_pictures(id, face)
+        inputs = [(name, socket.doc or str(socket.kind)) for name, socket in face.unfolded_inputs.items()]
+        outputs = [(name, output.doc or str(output.kind)) for name, output in face.outputs.items()]
+        values = [
+            (value.label or name.replace("_", " "), describe_value(value, describe_default(value)))
+            for name, value in face.values.items()
+            if not value.folded
+        ]
+        for title, rows in (("Inputs", inputs), ("Values", values), ("Outputs", outputs)):
+            self._draw_rows(title, rows)
+        imgui.end_child()
+
+    def _draw_pictures(self, id: str, face: Signature) -> None:
+        """Draw what goes into the first input, and what comes out, where the graph has pictures of both."""
+        session, scale = self._context.session, ui_scale()
+        before = find_picture_before(session.graph, id, face)
+        prefix = "".join(f"{group}/" for group in session.place)
+        paths = [(title, prefix + path) for title, path in (("Before", before), ("After", id)) if path]
+        pictures = [(title, picture) for title, path in paths if (picture := find_picture(self._context.preview, path))]
+        for index, (title, (reference, across, down)) in enumerate(pictures):
+            if index:
+                imgui.same_line(0.0, 16.0 * scale)
+            imgui.begin_group()
+            draw_dim(self._context, title)
+            imgui.image(reference, ImVec2(_PICTURE * scale, _PICTURE * scale * down / across))
+            imgui.end_group()
+            corner, end = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+            self._context.places[f"picture {title}"] = (corner.x, corner.y, end.x, end.y)
+
+    def _draw_rows(self, title: str, rows: Iterable[tuple[str, str]]) -> None:
+        rows = list(rows)
+        if not rows:
+            return
+        imgui.spacing()
+        imgui.text_colored(vec4(self._context.palette.accent), title)
+        if imgui.begin_table(title, 2, int(imgui.TableFlags_.borders_inner_h)):
+            imgui.table_setup_column("name", imgui.TableColumnFlags_.width_fixed.value, _NAMES * ui_scale())
+            imgui.table_setup_column("text", imgui.TableColumnFlags_.width_stretch.value)
+            for name, text in rows:
+                imgui.table_next_row()
+                imgui.table_next_column()
+                imgui.text_wrapped(name)
+                imgui.table_next_column()
+                draw_wrapped(self._context.palette.dim, text)
+            imgui.end_table()
+
+
+def read_paragraphs(item: Item) -> tuple[str, ...]:
+    """The paragraphs of what a node says about itself."""
+    doc = inspect.getdoc(type(item)) or "" if isinstance(item, Node) else ""
+    return tuple(" ".join(part.replace("`", "").split()) for part in doc.split("\n\n") if part.strip())
+
+
+def find_picture_before(graph: Graph, id: str, face: Signature) -> str:
+    """The element that feeds the first linked input of a node, as the paths of thumbnails name it; "" for none."""
+    for name in face.unfolded_inputs:
+        source = graph.links.get(Port(id, name))
+        if source is not None:
+            return str(source) if source.node == INPUTS else source.node
+    return ""
+
+
+def find_picture(preview: Preview, path: str) -> tuple[imgui.ImTextureRef, int, int] | None:
+    """The thumbnail of an element with its size, None if there is none."""
+    thumbnail = preview.thumbnail(path)
+    if thumbnail is None:
+        return None
+    width, height = thumbnail[0].size
+    return imgui.ImTextureRef(thumbnail[0].native_handle), width, height

@@ -1,0 +1,47 @@
+"""The page of a node inside the editor."""
+
+from __future__ import annotations
+
+from gui_driver import Ui
+from halation import presets
+from halation.authoring.edits.element_id import ElementId
+from halation.editor.dialogs.node_page import find_picture_before, read_paragraphs
+from halation.graph import Graph, Port, signature
+from halation.nodes import catalogue
+
+BLOOM = next(path for path in presets.paths() if path.stem == "soft_bloom")
+
+
+def test_the_page_of_the_selected_node_with_pictures_before_and_after(gui) -> None:
+    def body(ui: Ui) -> None:
+        ui.settled()
+        ui.session.select([])
+        ui.move("Graph", (0.5, 0.9))
+        ui.keys("Shift+F1")
+        assert not ui.editor.dialogs.any
+        ui.session.select([ElementId("bloom")])
+        ui.settled()
+        ui.until(lambda: {"bloom", "inputs.beauty"} <= ui.editor.preview.thumbnails)
+        ui.keys("Shift+F1")
+        ui.until(lambda: "dialog Node" in ui.editor.places)
+        ui.wait(3)
+        before, after = ui.editor.places["picture Before"], ui.editor.places["picture After"]
+        assert before[2] < after[0] and before[3] - before[1] > 100.0
+        ui.shot("node_page.png")
+        ui.keys("Escape")
+        ui.wait(3)
+        assert not ui.editor.dialogs.any
+
+    gui(body, BLOOM)
+
+
+def test_every_node_has_a_page() -> None:
+    for type in catalogue().values():
+        node = type()
+        assert read_paragraphs(node), type.id
+        graph = Graph().add("source", catalogue()["checker"]()).add("node", node)
+        face = signature(node)
+        assert find_picture_before(graph, "node", face) == ""
+        if "image" in face.unfolded_inputs:
+            linked = graph.connect(Port("source", "out"), Port("node", "image"))
+            assert find_picture_before(linked, "node", face) == "source"
