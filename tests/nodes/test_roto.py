@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from devices import form_to_test
 from halation.document.reading import loads
 from halation.document.writing import dumps
 from halation.errors import HalationError
@@ -25,7 +26,9 @@ from halation.nodes import (
     split_points,
 )
 from halation.nodes.input.roto import Roto
+from halation.renderer import Renderer, RenderRequest, open_device
 from halation.resources.sandbox import UNRESTRICTED
+from msgspec.structs import replace as change
 from polygons import measure_coverage, measure_distance
 
 WIDTH, HEIGHT = 101, 75
@@ -186,3 +189,18 @@ def test_a_control_can_turn_a_field_of_a_shape():
     assert not [problem for problem in problems(graph) if problem.rule is BAD_CONTROL]
     graph = replace(graph, controls={"edge": Control(Port("roto", "shapes.shape_2.feather"))})
     assert [problem.sentence for problem in problems(graph) if problem.rule is BAD_CONTROL]
+
+
+def test_a_large_picture_is_the_same_in_tiles():
+    shapes = name_roto_shapes(
+        a=RotoShape(points=wave(40, 5), feather=0.1), b=RotoShape(points=join_points(SQUARE), mode="subtract")
+    )
+    graph = Graph().add("roto", Roto(shapes=shapes)).add_output("mask", Output(Kind.FIELD))
+    graph = graph.connect(Port("roto", "mask"), Port("outputs", "mask"))
+    masks = []
+    for side in (16384, 150):
+        device = open_device(form_to_test(), sandbox=UNRESTRICTED)
+        engine = Renderer(device.with_target(change(device.target, max_size=side)), budget=0, sandbox=UNRESTRICTED)
+        masks.append(engine.render(graph, RenderRequest({}, size=(301, 203), precision="float"))["mask"])
+        engine.close()
+    np.testing.assert_array_equal(*masks)

@@ -95,7 +95,6 @@ HANDLES: tuple[Action[ViewerContext], ...] = (
         "viewer",
         can_draw,
         lambda context: context.viewer.pen.is_drawing,
-        contexts=frozenset({"viewer"}),
         doc="Click on the picture to set corners of a new shape of the selected node, drag to set smooth points, and "
         "click the first point to close it. Afterwards points and tangents can be dragged; Alt pulls tangents out of a "
         "point, or moves one tangent alone. A double click on the line adds a point.",
