@@ -74,9 +74,9 @@ def _serve(path: Path | None, form: parsing.Form | None, memory: int, limits: Se
             replies = stack.enter_context(os.fdopen(os.dup(sys.stdout.fileno()), "wb"))
             os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
             serve_stream(queue, sys.stdin.buffer, replies)
-        print_note(f"{renderer.device.description}; ready{'' if path is None else f' at {path}'}")
         service = RenderService(renderer, sandbox, limits)
         try:
+            print_note(f"{renderer.device.description}; ready{'' if path is None else f' at {path}'}")
             while (turn := queue.take_request()) is not None:
                 service.answer(*turn)
         except KeyboardInterrupt:
