@@ -19,7 +19,6 @@ from ...glsl import parse
 from ...graph.expressions import Expression, ExpressionError
 from ...graph.expressions.evaluate import CHANNELS
 from ...graph.expressions.functions import ExpressionFunction
-from ...graph.expressions.parser import parse_parts
 from ...resources.color_program import ColorProgram
 
 _MAX_FORMULAS = 256
@@ -189,6 +188,8 @@ def write_formula(text: str, names: tuple[str, ...], owner: str) -> ColorProgram
 
 @lru_cache(_MAX_FORMULAS)
 def _write_function(text: str, names: tuple[str, ...]) -> ColorProgram:
+    from ...graph.expressions.parser import parse_parts  # most graphs have no formula
+
     part = parse_parts(text, FormulaWriter(names))
     function = f"formula_{blake2b(repr((text, names)).encode(), digest_size=8).hexdigest()}"
     parameters = ["vec3 clock", *(f"{'vec4' if name in _PICTURES else 'float'} {name}" for name in names)]
