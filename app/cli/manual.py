@@ -35,7 +35,7 @@ def catalogue_page(nodes: Sequence[type[Node]]) -> str:
     for name, menu in menus.items():
         blocks += [f"## {_menu_title(name, menu)}", _menu_table(menu)]
         for node in menu:
-            blocks += _node_section(node)
+            blocks += write_node_section(node)
     return "\n\n".join(blocks) + "\n"
 
 
@@ -53,7 +53,7 @@ def _menu_table(nodes: Iterable[type[Node]]) -> str:
     rows = [
         (
             f"[{node.id}](#{_slug(node.id)})",
-            _escape_markdown(node_doc(node).splitlines()[0]),
+            escape_markdown(node_doc(node).splitlines()[0]),
             _list_sockets(node.inputs),
             ", ".join(f"`{name}` {output_type(output)}" for name, output in node.outputs.items()),
         )
@@ -62,7 +62,8 @@ def _menu_table(nodes: Iterable[type[Node]]) -> str:
     return _table(("node", "what it does", "inputs", "outputs"), rows)
 
 
-def _node_section(node: type[Node]) -> Iterator[str]:
+def write_node_section(node: type[Node]) -> Iterator[str]:
+    """The Markdown blocks about a node: its heading, what it does, and tables of inputs, outputs and values."""
     yield f"### {node.id}"
     if node.required_package:
         yield _escape_paragraph(f"From the plug-in {node.required_package.replace('==', ' ')}.")
@@ -73,7 +74,7 @@ def _node_section(node: type[Node]) -> Iterator[str]:
         noted = {name: socket for name, socket in sockets.items() if socket_note(socket) and not socket.folded}
         if noted:
             rows = [
-                (f"`{name}`", socket_type(socket), _escape_markdown(socket_note(socket)))
+                (f"`{name}`", socket_type(socket), escape_markdown(socket_note(socket)))
                 for name, socket in noted.items()
             ]
             yield _table((title, "type", ""), rows)
@@ -87,11 +88,11 @@ def _value_row(value: Value) -> tuple[str, ...]:
     return (
         f"`{value.name}`",
         value.type,
-        _escape_markdown(default_text(value)),
+        escape_markdown(default_text(value)),
         soft_range(value),
         hard_range(value),
         value.unit or "",
-        _escape_markdown(". ".join(filter(None, (choices, value.doc)))),
+        escape_markdown(". ".join(filter(None, (choices, value.doc)))),
     )
 
 
@@ -106,10 +107,10 @@ def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 def _escape_paragraph(text: str) -> str:
     """Escape a paragraph, also where its start looks like a list or the line under a heading."""
-    return re.sub(r"^(\d+)(?=[.)] )|^(?=[-+=] )", r"\1\\", _escape_markdown(text))
+    return re.sub(r"^(\d+)(?=[.)] )|^(?=[-+=] )", r"\1\\", escape_markdown(text))
 
 
-def _escape_markdown(text: str) -> str:
+def escape_markdown(text: str) -> str:
     """Escape a text for Markdown and put it on one line; text between backticks stays as it is."""
     parts = " ".join(text.split()).split("`")
     parts[::2] = [re.sub(r"([\\*_<>\[\]~#]|&(?=\w))", r"\\\1", part) for part in parts[::2]]

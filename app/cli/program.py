@@ -104,7 +104,7 @@ class _Group(TyperGroup):
 app = typer.Typer(
     name="halation",
     cls=_Group,
-    add_completion=False,
+    add_completion=True,
     rich_markup_mode=None,
     epilog=EXIT_CODES,
     help="A node-graph compositor for screen-space effects.",
@@ -158,8 +158,8 @@ def run(arguments: Sequence[str]) -> int:
             raise MemoryError(f"{memory / 2**20:.0f} MiB of memory are too few (ulimit -v): allow 288 MiB at least")
         words = tuple(arguments)
         code = get_command(app).main(list(words), prog_name="halation", standalone_mode=False, obj=words)
-    except SystemExit:  # so click ends when the program that read its help has ended
-        code = report_failure(BrokenPipeError(), as_json)
+    except SystemExit as end:  # so click ends completions (0), and when the program that read its help has ended (1)
+        code = report_failure(BrokenPipeError(), as_json) if end.code else 0
     except (Exception, KeyboardInterrupt) as fault:
         code = report_failure(fault, as_json)
     return flush_output(code if isinstance(code, int) else 0)

@@ -48,7 +48,7 @@ def dev(checkout: Path, *words: str, commands: dict[str, str]) -> subprocess.Com
 def test_help(checkout: Path, word: str) -> None:
     result = dev(checkout, *filter(None, [word]), commands={})
     assert result.returncode == 0
-    assert all(f"./dev {task}" in result.stdout for task in ("demo", "edit", "test", "renew", "release"))
+    assert all(f"./dev {task}" in result.stdout for task in ("demo", "edit", "test", "renew", "release", "site"))
 
 
 def test_an_unknown_word_is_a_usage_error(checkout: Path) -> None:
@@ -84,7 +84,7 @@ case $1 in
     -m) case $2 in
         venv) echo venv >>log; d=.venv/bin; {make} -p $d && {copy} "$0" $d/python && {copy} "$0" $d/halation ;;
         pip) echo pip "$@" >>log; echo Collecting a; echo ERROR: no network; exit {pip} ;;
-        pytest) echo run "$@" >>log; exit 7 ;;
+        pytest | mkdocs) echo run "$@" >>log; exit 7 ;;
     esac ;;
     demo | edit | tests/*.py) echo run "$@" >>log; exit 7 ;;
 esac
@@ -122,7 +122,11 @@ def test_set_up_happens_once_and_again_when_something_changed(checkout: Path) ->
     assert steps("test") == ["venv", "pip", "run"]
 
 
-TASKS = {"renew": (".[test]", "tests/generated_pages.py"), "release": (".[release]", "tests/release.py")}
+TASKS = {
+    "renew": (".[test]", "tests/generated_pages.py"),
+    "release": (".[release]", "tests/release.py"),
+    "site": (".[docs]", "-m mkdocs build -f tests/site/mkdocs.yml"),
+}
 
 
 @pytest.mark.parametrize("task", TASKS)
@@ -131,7 +135,7 @@ def test_a_task_installs_what_it_needs(checkout: Path, task: str) -> None:
     assert result.returncode == 7, result.stderr
     venv, pip, run = (checkout / "log").read_text().splitlines()
     extra, script = TASKS[task]
-    assert (venv, pip.split()[-2:], run.split()) == ("venv", ["-e", extra], ["run", script])
+    assert (venv, pip.split()[-2:], run.split()) == ("venv", ["-e", extra], ["run", *script.split()])
 
 
 def test_a_task_keeps_what_another_one_installed(checkout: Path) -> None:

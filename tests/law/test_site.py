@@ -1,0 +1,74 @@
+"""The manual as a site: the navigation names every page, and each node has its own.
+
+`./dev site` builds all of it strictly; these tests find the same faults without rendering pictures.
+"""
+
+from __future__ import annotations
+
+import logging
+import re
+import sys
+from pathlib import Path
+
+import pytest
+from halation.nodes import built_in_nodes
+from halation.presets import paths
+
+ROOT = Path(__file__).parents[2]
+SITE = ROOT / "tests/site"
+FIRST_PAGE_LIMIT = 1_000_000
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The site, built strictly, with empty pictures of nodes."""
+    from mkdocs.commands.build import build
+    from mkdocs.config import load_config
+
+    folder = tmp_path_factory.mktemp("site")
+    patch = pytest.MonkeyPatch()
+    patch.syspath_prepend(SITE)
+    patch.setenv("NO_MKDOCS_2_WARNING", "1")
+    import node_pages
+
+    names = [f"pictures/nodes/{name}.jpg" for name in ("sample", *built_in_nodes())]
+    patch.setattr(node_pages, "render_pictures", lambda nodes: ((name, b"") for name in names))
+    logging.getLogger("mkdocs").setLevel(logging.INFO)
+    try:
+        build(load_config(str(SITE / "mkdocs.yml"), site_dir=str(folder)))
+    finally:
+        patch.undo()
+        sys.modules.pop("node_pages", None)
+    return folder
+
+
+def test_each_page_and_each_node_is_there(site: Path) -> None:
+    """A dead link, or a page that the navigation does not name, would have stopped the build."""
+    pages = {path.stem for path in (ROOT / "docs").glob("*.md")}
+    assert pages <= {path.stem for path in site.glob("*.html")}
+    assert {path.stem for path in (site / "nodes").glob("*.html")} == set(built_in_nodes())
+    assert {path.stem for path in (site / "pictures").glob("*.jpg")} == {path.stem for path in paths()}
+
+
+def test_a_page_of_a_node_says_what_the_declaration_says(site: Path) -> None:
+    page = (site / "nodes/bloom.html").read_text(encoding="utf-8")
+    bloom = built_in_nodes()["bloom"]
+    assert all(f"<code>{name}</code>" in page for name, value in bloom.values.items() if not value.folded)
+    assert bloom.aliases[0] in page and 'href="../presets.html#soft_bloom"' in page
+    assert 'id="soft_bloom"' in (site / "presets.html").read_text(encoding="utf-8")
+    assert re.search(r"\d+ passes, and \d+ MiB of textures at 1920 x 1080", page)
+
+
+def test_nothing_is_loaded_from_elsewhere(site: Path) -> None:
+    for name in ("index.html", "nodes/bloom.html"):
+        text = (site / name).read_text(encoding="utf-8")
+        assert not re.findall(r'(?:src|<link rel="stylesheet" href)="https?:[^"]*', text)
+        (script,) = re.findall(r'src="([./]*assets/file_search.js)"', text)
+        assert (site / name).parent.joinpath(script).is_file()
+
+
+def test_the_first_page_is_small(site: Path) -> None:
+    text = (site / "index.html").read_text(encoding="utf-8")
+    files = {name.split("?")[0] for name in re.findall(r'(?:src|href)="([^":#]+\.(?:js|css|png|jpg))"', text)}
+    assert len(files) >= 4
+    assert len(text) + sum((site / name).stat().st_size for name in files) <= FIRST_PAGE_LIMIT

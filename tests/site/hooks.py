@@ -1,0 +1,88 @@
+"""What MkDocs calls while it builds the manual: adds pages that are generated, and adapts Markdown of the repository.
+
+Pages in docs/ are written for viewers of repositories, which differ from MkDocs in two ways: links may leave docs/, and
+what belongs to a list may be indented by less than four spaces. README.md is the first page.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from halation.nodes import built_in_nodes
+from mkdocs.structure.files import File, Files
+from node_pages import find_users, render_pictures, write_node_page
+from preset_pages import picture_files, write_gallery
+
+ROOT = Path(__file__).parents[2]
+
+
+def on_config(config: Any) -> Any:
+    """Add the page of each node to the navigation, by menus."""
+    menus: dict[str, list[Any]] = {}
+    for node in built_in_nodes().values():
+        menus.setdefault(node.category.capitalize(), []).append({node.title: f"nodes/{node.id}.md"})
+    for entry in config.nav:
+        if "Nodes" in entry:
+            entry["Nodes"] = [{"All nodes": "nodes.md"}, *({name: pages} for name, pages in menus.items())]
+    return config
+
+
+def on_files(files: Files, config: Any) -> Files:
+    """Add README.md, the pages of nodes, the gallery, and their pictures."""
+    for name, content in write_files():
+        files.append(File.generated(config, name, content=content))
+    return files
+
+
+def write_files() -> Iterator[tuple[str, str | bytes]]:
+    """The name and the content of every file that is generated."""
+    yield "index.md", write_first_page()
+    for name in ("site.css", "file_search.js"):
+        yield f"assets/{name}", Path(__file__).with_name(name).read_text(encoding="utf-8")
+    users = find_users()
+    nodes = built_in_nodes()
+    pictures = dict(render_pictures(nodes.values()))
+    yield from pictures.items()
+    for node in nodes.values():
+        yield f"nodes/{node.id}.md", write_node_page(node, users.get(node.id, ()), pictures)
+    yield "presets.md", write_gallery()
+    yield from picture_files()
+
+
+def write_first_page() -> str:
+    """README.md without its large pictures, which other pages show: the first page stays below 1 MB."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8").replace("](docs/", "](")
+    for name in ("presets.jpg", "nodes.jpg", "editor.png", "editor_light.png"):
+        text = re.sub(rf"^!\[.*\]\(images/{re.escape(name)}\)\n\n", "", text, flags=re.M)
+    return text
+
+
+def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
+    """Adapt a page: links to README.md lead to the first page, and lists are indented as MkDocs needs it."""
+    text = re.sub(r"\]\((?:\.\./)+README\.md", "](index.md", markdown)
+    text = re.sub(r"\]\((?:\.\./)+docs/", "](../", text) if "/" in page.file.src_uri else text
+    return indent_lists(text)
+
+
+def on_post_page(output: str, page: Any, **_: Any) -> str:
+    """Replace the one script that Material loads from elsewhere by ours, so that the site needs no network."""
+    own = "../" * page.url.count("/") + "assets/file_search.js"
+    return output.replace("https://unpkg.com/iframe-worker/shim", own)
+
+
+def indent_lists(markdown: str) -> str:
+    """Markdown with four spaces before what continues a list item, where the source has two or three."""
+    lines: list[str] = []
+    width = 0
+    for line in markdown.split("\n"):
+        start = re.match(r"(\d+\. |[-*] )", line)
+        if start:
+            width = len(start[0])
+        elif line and not line.startswith(" "):
+            width = 0
+        inside = width and line.startswith(" " * width)
+        lines.append(" " * (4 - width) + line if inside else line)
+    return "\n".join(lines)
