@@ -10,6 +10,23 @@ from halation.editor.canvas.brush import READABLE
 from halation.graph import Port
 
 
+def test_the_minimap_is_there_only_while_something_is_out_of_view(gui) -> None:
+    def body(ui) -> None:
+        show(ui, chain("exposure", "bloom", "clip"))
+        ui.editor.store.change(minimap=True)
+        ui.editor.canvas.fit()
+        ui.wait(4)
+        assert "minimap" not in ui.editor.places
+        ui.editor.canvas.zoom = 3.0
+        ui.wait(3)
+        assert "minimap" in ui.editor.places
+        ui.editor.canvas.fit()
+        ui.wait(4)
+        assert "minimap" not in ui.editor.places
+
+    gui(body, size=(1400, 900))
+
+
 def test_the_canvas_moves_on_while_something_is_dragged_to_its_border(gui) -> None:
     def body(ui) -> None:
         show(ui, chain("exposure", "bloom"))

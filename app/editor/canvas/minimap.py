@@ -1,4 +1,4 @@
-"""The minimap: the whole graph in a corner. A click or drag in it pans the view."""
+"""The minimap: the whole graph in a corner, while a part of it is out of view. A click or drag in it pans the view."""
 
 from __future__ import annotations
 
@@ -24,17 +24,24 @@ class Minimap:
 
     context: CanvasContext
     dragging: bool = False
+    is_needed: bool = False
+    """True while an element is out of view: else the minimap would only hide what is below it."""
 
     def find_rect(self, panel: Rect) -> Rect | None:
-        """The rectangle of the minimap, or None in a small panel."""
+        """The rectangle of the minimap, or None in a small panel and while everything is in view."""
         scale = ui_scale()
         width, height, gap = _SIZE[0] * scale, _SIZE[1] * scale, _GAP * scale
-        if panel[2] - panel[0] < width * 2.2 or panel[3] - panel[1] < height * 2.2:
+        if not self.is_needed or panel[2] - panel[0] < width * 2.2 or panel[3] - panel[1] < height * 2.2:
             return None
         return panel[2] - gap - width, panel[3] - gap - height, panel[2] - gap, panel[3] - gap
 
     def draw(self, brush: DrawContext, panel: Rect, scene: CanvasScene) -> None:
         """Draw the minimap, and pan the view to a click in it."""
+        left, top, right, bottom = brush.visible
+        self.is_needed = self.dragging or any(
+            box.x < left or box.y < top or box.x + box.w > right or box.y + box.h > bottom
+            for box in scene.boxes.values()
+        )
         rect = self.find_rect(panel)
         bounds = find_bounds([*(box.rect for box in scene.boxes.values()), brush.visible])
         if rect is None or bounds is None:
