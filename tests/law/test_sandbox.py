@@ -65,7 +65,6 @@ OPENERS = {
     "media/meshes/load.py": "trimesh is given an open file",
     "media/video/index.py": "videos, after `check_file`",
     "media/video/writer.py": "the temporary file of a `Replacement`",
-    "color/lut_files.py": "OpenColorIO writes a table as a text, and no file",
     "color/config_files.py": "archives of configs, after `check_file`",
     "color/gpu_programs.py": "tables, after `may_name_files` has opened them",
     "media/pictures/wide_integers.py": "a picture that it writes into a temporary folder",
