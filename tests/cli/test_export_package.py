@@ -18,6 +18,8 @@ from halation.compiler import Plan, Request, compile_graph
 from halation.export.package.curves import read_slot, simplify
 from halation.export.package.dialects import COVERING_VERTEX, DIALECTS
 from halation.export.package.planning import TARGET
+from halation.export.package.sampling import Sample
+from halation.export.package.variants import MAX_SPANS, find_axis
 from halation.inputs.provider import MediaProvider
 from halation.presets import paths
 from halation.resources.sandbox import UNRESTRICTED
@@ -207,6 +209,14 @@ def test_curves_are_polygons_and_grids_are_bilinear() -> None:
         many = {"base": [2.0, 0.0], "curves": [curve, {**curve, "knob": "b"}], "mode": "multiply"}
         twice = read_slot(many, {"a": x, "b": x})
         np.testing.assert_allclose(twice, [line[0] * line[0] / 2.0, 2.0 * line[1]], rtol=1e-6)
+
+
+def test_the_settings_of_the_graph_keep_their_passes() -> None:
+    """However many spans a knob has, the one with its value in the graph is kept, and that value stands for it."""
+    samples = {float(x): Sample(None, x, ()) for x in range(40)}  # pyright: ignore[reportArgumentType]
+    for rest in samples:
+        axis = find_axis("size", rest, samples)
+        assert axis and len(axis.spans) <= MAX_SPANS and rest in [span.middle for span in axis.spans]
 
 
 def test_a_polygon_is_simplified_without_loss() -> None:

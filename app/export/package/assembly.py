@@ -84,7 +84,8 @@ class _Assembly:
     def _write_variant(self, spans: Mapping[str, Span], knobs: list[Knob], base: Point, phase: Phase) -> Record:
         """One plan: the passes within spans of the knobs that change them, with curves for all numbers."""
         planner = self.planner
-        middle = {**base, **{name: span.middle for name, span in spans.items() if name in base}}
+        names = {knob.name for knob in knobs}  # the first frame has no knob of time
+        middle = {**base, **{name: span.middle for name, span in spans.items() if name in names}}
         rest = planner.take(middle, phase)
         by_knob: dict[str, dict[float, Sample]] = {}
         for knob in knobs:

@@ -48,7 +48,8 @@ def find_axis(knob: str, rest: float, samples: Mapping[float, Sample]) -> Varian
     if len(runs) < 2:
         return None
     if len(runs) > MAX_SPANS:
-        runs = [runs[round(at * (len(runs) - 1) / (MAX_SPANS - 1))] for at in range(MAX_SPANS)]
+        chosen = {round(at * (len(runs) - 1) / (MAX_SPANS - 2)) for at in range(MAX_SPANS - 1)}
+        runs = [run for at, run in enumerate(runs) if at in chosen or rest in run]
     middles = [rest if rest in run else run[len(run) // 2] for run in runs]
     spans = (Span(run[0], run[-1], middle) for run, middle in zip(runs, middles, strict=True))
     return VariantAxis(knob, tuple(spans))
