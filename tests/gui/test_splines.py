@@ -61,7 +61,9 @@ def test_a_shape_is_drawn_with_the_pen(gui, path: Path) -> None:
         ui.shot("pen.png")
         ui.click(at(ui, 0.1, 0.6))
         ui.settled()
-        assert not ui.editor.viewer.pen.is_drawing and len(ui.session.history.steps) == steps + 3
+        pen = ui.editor.viewer.pen
+        assert pen.find_point("roto.shapes.shape_1.points") == 2 and pen.find_point(str(POINTS)) == -1
+        assert not pen.is_drawing and len(ui.session.history.steps) == steps + 3
         drawn = ui.session.graph.value(PORT)["shape_1"].fields["points"]
         rows = split_points(drawn)
         assert rows[0][:6] == pytest.approx((0.1, 0.6, 0.0, 0.0, 0.0, 0.0), abs=0.004)

@@ -16,7 +16,7 @@ from .lights import Lamp, change_light, drop_light, lamps, make_merge_token, pla
 from .mattes import click, picks
 from .orbit import Orbit, aspect_of, move_camera, scene_at
 from .snapping import Snapping
-from .splines import SplineTarget, aim_pen, can_draw, find_pen, find_spline, lift_pen, move_part
+from .splines import SplineTarget, aim_pen, can_draw, find_pen, find_spline, lift_pen, move_part, select_point
 
 if TYPE_CHECKING:
     from .context import ViewerContext
@@ -158,7 +158,7 @@ class MouseHold:
             held_point = grip[0] / sight.picture[0], grip[1] / sight.picture[1]
         if aim.spline is not None:
             context.items[str(aim.spline.outline.port)] = aim.spline.outline.name
-            context.viewer.pen.point = aim.spline.index if aim.spline.part != "curve" else -1
+            select_point(context, aim.spline.outline, aim.spline.index if aim.spline.part != "curve" else -1)
         if aim.kind == "pen" and aim.part == "new":
             aim_pen(context, (x, y), None)
         if aim.lamp is not None:

@@ -9,7 +9,7 @@ from imgui_bundle import imgui
 from ..theme.style import u32, ui_scale
 from .geometry import Point, Sight
 from .grips import draw_grip, is_near
-from .splines import SplineOutline, find_drawn, list_outlines, list_tangents
+from .splines import SplineOutline, find_drawn, find_selected, list_outlines, list_tangents
 from .strokes import BLACK, CHOSEN, SHADE, WHITE, around, draw_label, draw_path
 
 if TYPE_CHECKING:
@@ -49,17 +49,17 @@ def _draw_points(
     context: ViewerContext, lines: imgui.ImDrawList, sight: Sight, outline: SplineOutline, mouse: Point
 ) -> None:
     """Draw the points of the selected shape, and the tangents of the selected point."""
-    pen, scale = context.viewer.pen, ui_scale()
-    if 0 <= pen.point < len(outline.points):
-        middle = sight.place(outline.places[pen.point])
-        for part, place in list_tangents(outline, pen.point):
+    selected, scale = find_selected(context, outline), ui_scale()
+    if selected >= 0:
+        middle = sight.place(outline.places[selected])
+        for part, place in list_tangents(outline, selected):
             at = sight.place(place)
             draw_path(lines, [middle, at], WHITE, 1.0)
             draw_grip(lines, at, "turn", is_lit=is_near(at, mouse))
             context.places[f"tangent {part} {outline.points_port}"] = around(at, 5.0 * scale)
     for index, place in enumerate(outline.places):
         at, size = sight.place(place), 3.5 * scale
-        color = CHOSEN if index == pen.point or is_near(at, mouse) else WHITE
+        color = CHOSEN if index == selected or is_near(at, mouse) else WHITE
         for grown, ink in ((1.5 * scale, u32(BLACK, SHADE)), (0.0, u32(color))):
             reach = size + grown
             lines.add_rect_filled((at[0] - reach, at[1] - reach), (at[0] + reach, at[1] + reach), ink)

@@ -133,12 +133,13 @@ def list_outlines(context: ViewerContext) -> tuple[SplineOutline, ...]:
 
 def find_spline(context: ViewerContext, sight: Sight, at: Point, scale: float) -> SplineTarget | None:
     """The part of a shape under the mouse: points of the selected shape first, then its tangents, then curves."""
-    outlines, pen = list_outlines(context), context.viewer.pen
+    outlines = list_outlines(context)
     for outline in reversed(outlines):
-        if outline.chosen and 0 <= pen.point < len(outline.points):
-            for part, place in list_tangents(outline, pen.point):
+        selected = find_selected(context, outline)
+        if outline.chosen and selected >= 0:
+            for part, place in list_tangents(outline, selected):
                 if math.dist(at, sight.place(place)) <= _REACH * scale:
-                    return SplineTarget(outline, part, pen.point)
+                    return SplineTarget(outline, part, selected)
         for index, place in enumerate(outline.places if outline.chosen else ()):
             if math.dist(at, sight.place(place)) <= _REACH * scale:
                 return SplineTarget(outline, "point", index)
@@ -173,6 +174,17 @@ def _measure_segment(at: Point, start: Point, end: Point) -> tuple[float, float]
     return math.dist(at, (start[0] + along * dx, start[1] + along * dy)), along
 
 
+def find_selected(context: ViewerContext, outline: SplineOutline) -> int:
+    """The number of the selected point of an outline; -1 if none is."""
+    number = context.viewer.pen.find_point(str(outline.points_port))
+    return number if number < len(outline.points) else -1
+
+
+def select_point(context: ViewerContext, outline: SplineOutline, number: int) -> None:
+    """Select a point of an outline; none for -1."""
+    context.viewer.pen.selection = str(outline.points_port), number
+
+
 # --- edits ---------------------------------------------------------------------------------------------------------
 
 
@@ -205,21 +217,22 @@ def insert_on_curve(context: ViewerContext, target: SplineTarget) -> None:
     """Insert a point on a curve, which keeps its form."""
     points = insert_point(target.outline.points, target.index, target.t)
     _set_points(context, target.outline, [_round(point) for point in points], "Insert a point in")
-    context.viewer.pen.point = target.index + 1
+    select_point(context, target.outline, target.index + 1)
 
 
 def can_remove_point(context: ViewerContext) -> bool:
     """True if a point of a shape is selected that has others."""
     outline = next(iter(reversed(list_outlines(context))), None)
-    return outline is not None and 0 <= context.viewer.pen.point < len(outline.points) and len(outline.points) > 1
+    return outline is not None and find_selected(context, outline) >= 0 and len(outline.points) > 1
 
 
 def remove_point(context: ViewerContext) -> None:
     """Remove the selected point of the selected shape."""
-    outline, index = list_outlines(context)[-1], context.viewer.pen.point
+    outline = list_outlines(context)[-1]
+    index = find_selected(context, outline)
     points = [point for number, point in enumerate(outline.points) if number != index]
     _set_points(context, outline, points, "Remove a point of")
-    context.viewer.pen.point = -1
+    select_point(context, outline, -1)
 
 
 def _set_points(context: ViewerContext, outline: SplineOutline, points: list[Row], verb: str, merge: str = "") -> None:
@@ -260,7 +273,9 @@ def find_pen(context: ViewerContext, sight: Sight, at: Point, scale: float) -> S
 
 def find_drawn(context: ViewerContext) -> SplineOutline | None:
     """The shape that the pen draws."""
-    return next((outline for outline in list_outlines(context) if outline.name == context.viewer.pen.shape), None)
+    return next(
+        (outline for outline in list_outlines(context) if str(outline.points_port) == context.viewer.pen.shape), None
+    )
 
 
 def aim_pen(context: ViewerContext, start: Point, to: Point | None) -> None:
@@ -283,12 +298,13 @@ def lift_pen(context: ViewerContext) -> None:
     outline = find_drawn(context)
     if outline is not None:
         _set_points(context, outline, [*outline.points, point], "Add a point to")
-        pen.point = len(outline.points)
+        select_point(context, outline, len(outline.points))
         return
 
     def add() -> None:
-        pen.shape = context.session.apply(AddItem(port, "spline", {"points": point}, f"shape_{_count(context) + 1}"))
-        context.items[str(port)], pen.point = pen.shape, 0
+        name = context.session.apply(AddItem(port, "spline", {"points": point}, f"shape_{_count(context) + 1}"))
+        context.items[str(port)], pen.shape = name, f"{port}.{name}.points"
+        pen.selection = pen.shape, 0
 
     context.log.attempt(add)
 
