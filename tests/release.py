@@ -144,7 +144,8 @@ def read_license(package: Distribution) -> str:
     """The license that a package states, in a line."""
     fields = package.metadata
     classifiers = [line.rpartition(" :: ")[2] for line in fields.get_all("Classifier") or () if "License ::" in line]
-    stated = fields.get("License-Expression") or ", ".join(classifiers) or fields.get("License") or "not stated"
+    (expression,), (text,) = (fields.get_all(name) or ("",) for name in ("License-Expression", "License"))
+    stated = expression or ", ".join(classifiers) or text or "not stated"
     return "see below" if "\n" in stated.strip() else stated.strip()
 
 
