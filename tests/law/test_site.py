@@ -59,6 +59,11 @@ def test_a_page_of_a_node_says_what_the_declaration_says(site: Path) -> None:
     assert re.search(r"\d+ passes, and \d+ MiB of textures at 1920 x 1080", page)
 
 
+def test_bars_in_tables_have_no_backslash(site: Path) -> None:
+    page = (site / "command-line.html").read_text(encoding="utf-8")
+    assert "<code>half|float</code>" in page.replace("&#124;", "|") and "half\\|" not in page
+
+
 def test_nothing_is_loaded_from_elsewhere(site: Path) -> None:
     for name in ("index.html", "nodes/bloom.html"):
         text = (site / name).read_text(encoding="utf-8")

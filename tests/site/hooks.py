@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -64,7 +65,16 @@ def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
     """Adapt a page: links to README.md lead to the first page, and lists are indented as MkDocs needs it."""
     text = re.sub(r"\]\((?:\.\./)+README\.md", "](index.md", markdown)
     text = re.sub(r"\]\((?:\.\./)+docs/", "](../", text) if "/" in page.file.src_uri else text
-    return indent_lists(text)
+    return indent_lists(write_bars(text))
+
+
+def write_bars(markdown: str) -> str:
+    """Markdown in which code in tables has its bars as HTML: MkDocs shows the backslash that others need there."""
+
+    def rewrite(code: re.Match[str]) -> str:
+        return f"<code>{escape(code[1]).replace(chr(92) + '|', '&#124;')}</code>"
+
+    return re.sub(r"(?<=[| ,])`([^`\n]*\\\|[^`\n]*)`", rewrite, markdown)
 
 
 def on_post_page(output: str, page: Any, **_: Any) -> str:
