@@ -3,8 +3,8 @@
 float map_range(
     float field, float from_low, float from_high, float to_low, float to_high, int kind, float steps, bool limit
 ) {
-    precise float low = finite(from_low), length = finite(from_high) - low, away = finite(field) - low;
-    precise float t = length == 0.0 ? (away < 0.0 ? 0.0 : 1.0) : away / length;
+    float low = finite(from_low), length = finite(from_high) - low, away = finite(field) - low;
+    float t = length == 0.0 ? (away < 0.0 ? 0.0 : 1.0) : away / length;
     if (limit || kind == KIND_SMOOTH || kind == KIND_SMOOTHER) t = clamp(t, 0.0, 1.0);
     if (kind == KIND_SMOOTH) t = t * t * (3.0 - 2.0 * t);
     if (kind == KIND_SMOOTHER) t = t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
@@ -14,6 +14,6 @@ float map_range(
         if (limit) step_number = clamp(step_number, 0.0, count - 1.0);
         t = step_number / (count - 1.0);
     }
-    precise float mapped = mix(finite(to_low), finite(to_high), t);
+    float mapped = mix(finite(to_low), finite(to_high), t);
     return finite(mapped);
 }

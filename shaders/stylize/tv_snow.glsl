@@ -25,9 +25,9 @@ vec4 tv_snow(
     float fine = min(size, 1.0);  // a pixel averages 1 / fine lines, and as many flakes in each
     flakes *= fine;
     level *= sqrt(fine) * clamp(finite(lines), 0.0, 1.0);
-    precise vec3 snow = clamp(0.5 + finite(contrast) * (flakes + level), 0.0, 1.0);
+    vec3 snow = clamp(0.5 + finite(contrast) * (flakes + level), 0.0, 1.0);
 
-    precise vec3 code = srgb_encode(picture.rgb);
+    vec3 code = srgb_encode(picture.rgb);
     float share = clamp(finite(amount), 0.0, 1.0);
     code = mode == MODE_MIX ? mix(code, snow, share) : code * (1.0 + share * (2.0 * snow - 1.0));
     return finite(premultiplied(vec4(srgb_decode(code), picture.a)));

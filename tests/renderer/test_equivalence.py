@@ -32,15 +32,7 @@ def same_bits(one: dict[str, np.ndarray], other: dict[str, np.ndarray]) -> None:
         np.testing.assert_array_equal(one[name].view(np.uint8), other[name].view(np.uint8), name)
 
 
-OPEN = pytest.mark.xfail(
-    strict=True,
-    reason="channel_mixer: where a value is the picture itself, the driver computes dot() in another order if both "
-    "come from one pass; `precise` mends it there, spreads to what is fused before it, and breaks others",
-)
-"""A fault that is known and open: it is off by the last bit."""
-
-
-@pytest.mark.parametrize("seed", [pytest.param(seed, marks=OPEN) if seed == 37 else seed for seed in SEEDS])
+@pytest.mark.parametrize("seed", SEEDS)
 def test_fused_equals_unfused_to_the_bit(engines, seed):
     graph, wanted = random_graph(seed), RenderRequest(pictures(seed), precision="float")
     same_bits(engines["compute", True].render(graph, wanted), engines["compute", False].render(graph, wanted))

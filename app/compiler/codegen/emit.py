@@ -174,8 +174,9 @@ def _write_half_rounding(target: Target, halves: list[bool]) -> list[str]:
 def _write_fragment_main(names: ShaderNames, body: list[str], texels: list[str]) -> list[str]:
     """Write the entry point of a fragment pass, which makes one pixel."""
     start = f" + {names.start}" if names.start else ""
-    stores = (f"o{number} = {texel};" for number, texel in enumerate(texels))
-    return ["void main() {", f"pixel = ivec2(gl_FragCoord.xy){start}; extent = grid;", *body, *stores, "}"]
+    results = forms.write_results(texels)
+    stores = (f"o{number} = {name};" for number, name in enumerate(forms.name_results(texels)))
+    return ["void main() {", f"pixel = ivec2(gl_FragCoord.xy){start}; extent = grid;", *body, *results, *stores, "}"]
 
 
 def _write_texel(shape: PictureShape, result: str, half: bool) -> str:

@@ -69,13 +69,13 @@ def write_main(
     at, start = (f"{name} - {names.start}" if names.start else name for name in ("pixel", "first"))
     condition = f"if (all(lessThan({start}, {names.room}))) {{"
     if count == 1:
-        stores = (f"imageStore(o{number}, {at}, {texel});" for number, texel in enumerate(texels))
-        return [*lines, *body, condition, *stores, "}", "}"]
-    results = [f"texel{number}" for number in range(len(texels))]
+        stores = (f"imageStore(o{number}, {at}, {name});" for number, name in enumerate(name_results(texels)))
+        return [*lines, *body, *write_results(texels), condition, *stores, "}", "}"]
+    results = name_results(texels)
     step = "pixel += along;" if convolve else "++pixel.y;"
     arguments = [f"{glsl_type(names.shape(convolve.image).channels)} convolved"] if convolve else []
     pixel_function = [
-        f"void made({', '.join([*arguments, *(f'out vec4 {name}' for name in results)])}) {{",
+        f"void made({', '.join([*arguments, *(f'precise out vec4 {name}' for name in results)])}) {{",
         *body,
         *(f"{name} = {texel};" for name, texel in zip(results, texels, strict=True)),
         "}",
@@ -85,13 +85,29 @@ def write_main(
     for k in range(count):
         texel_names = [f"{name}_{k}" for name in results]
         convolved_argument = [f"s{k}"] if convolve else []
-        lines.append(f"vec4 {', '.join(texel_names)}; made({', '.join([*convolved_argument, *texel_names])}); {step}")
+        lines.append(f"precise vec4 {', '.join(texel_names)};")
+        lines.append(f"made({', '.join([*convolved_argument, *texel_names])}); {step}")
     lines += ["pixel = first;", condition]
     # All reads before all writes: only then are they known to read the same.
     for k in range(count):
         stores = (f"imageStore(o{number}, {at}, {name}_{k});" for number, name in enumerate(results))
         lines.append(f"{' '.join(stores)} {step}")
     return [*pixel_function, *lines, "}", "}"]
+
+
+def write_results(texels: Sequence[str]) -> list[str]:
+    """Statements that compute what is stored.
+
+    It is precise, and so is by the rules of GLSL all that it is computed from. Otherwise drivers change the order of
+    sums where it saves an instruction, which depends on what else is in the program: a node would make other pixels
+    fused with its neighbors than in a pass of its own. Functions of nodes need no `precise` of their own.
+    """
+    return [f"precise vec4 {name} = {texel};" for name, texel in zip(name_results(texels), texels, strict=True)]
+
+
+def name_results(texels: Sequence[str]) -> list[str]:
+    """The names of what is stored."""
+    return [f"texel{number}" for number in range(len(texels))]
 
 
 def _write_place(along: str, across: str, convolve: Convolve | None) -> str:

@@ -13,7 +13,7 @@ from ...version import VERSION
 from ..order import ExportOrder
 from .curves import PairSamples, Record, find_needed_places
 from .display import write_display_program
-from .knobs import FRAME, Knob, PackageControl, Point, find_control_name
+from .knobs import FRAME, PackageControl, PackageKnob, Point, find_control_name
 from .parts import SharedParts, VariantSamples
 from .planning import OUTPUT, Phase, PointPlanner
 from .sampling import Sample, is_number_table
@@ -56,7 +56,7 @@ class _Assembly:
         start = first + len(phases) - 1
         knobs = [knob for control in planner.controls for knob in control.knobs]
         if last > start:
-            knobs.append(Knob(FRAME, start, start, last, is_whole=True))
+            knobs.append(PackageKnob(FRAME, start, start, last, is_whole=True))
         base = {FRAME: float(start), **planner.find_base(knobs, phases[-1])}
         self.samples = {knob.name: planner.sample_knob(knob, base, phases[-1]) for knob in knobs}
         found_axes = (find_axis(knob.name, base[knob.name], self.samples[knob.name]) for knob in knobs)
@@ -73,7 +73,9 @@ class _Assembly:
         notes = (*planner.notes, *_describe_held(held_axes), *self._describe_poor())
         return Package(document, notes, tuple(self.parts.programs), tuple(self.parts.blobs))
 
-    def _write_plans(self, axes: Sequence[VariantAxis], knobs: list[Knob], base: Point, phase: Phase) -> list[Record]:
+    def _write_plans(
+        self, axes: Sequence[VariantAxis], knobs: list[PackageKnob], base: Point, phase: Phase
+    ) -> list[Record]:
         """The plans of all variants; the span of the last axis changes fastest."""
         names = [axis.knob for axis in axes]
         return [
@@ -81,7 +83,7 @@ class _Assembly:
             for spans in itertools.product(*(axis.spans for axis in axes))
         ]
 
-    def _write_variant(self, spans: Mapping[str, Span], knobs: list[Knob], base: Point, phase: Phase) -> Record:
+    def _write_variant(self, spans: Mapping[str, Span], knobs: list[PackageKnob], base: Point, phase: Phase) -> Record:
         """One plan: the passes within spans of the knobs that change them, with curves for all numbers."""
         planner = self.planner
         names = {knob.name for knob in knobs}  # the first frame has no knob of time

@@ -16,7 +16,7 @@ Point = Mapping[str, float]
 """Values of knobs by name."""
 
 
-class Knob(Struct, frozen=True):
+class PackageKnob(Struct, frozen=True):
     """A number from `low` to `high` that a user may change; `rest` is its value in the graph."""
 
     name: str
@@ -38,7 +38,7 @@ class PackageControl(Struct, frozen=True):
     label: str
     doc: str
     value: Value
-    knobs: tuple[Knob, ...]
+    knobs: tuple[PackageKnob, ...]
 
     @property
     def widget(self) -> str:
@@ -83,18 +83,19 @@ def find_controls(graph: Graph) -> tuple[list[PackageControl], list[str]]:
     return controls, notes
 
 
-def _make_knobs(name: str, value: Value, rest: object) -> tuple[Knob, ...]:
+def _make_knobs(name: str, value: Value, rest: object) -> tuple[PackageKnob, ...]:
     name = f"{name}.0" if name == FRAME else name
     if value.type == "choice":
-        return (Knob(name, float(value.choices.index(str(rest))), 0.0, len(value.choices) - 1.0, is_whole=True),)
+        return (PackageKnob(name, float(value.choices.index(str(rest))), 0.0, len(value.choices) - 1.0, is_whole=True),)
     parts = [float(part) for part in (rest if isinstance(rest, tuple) else (rest,))]  # pyright: ignore
     if value.type == "bool":
-        return (Knob(name, parts[0], 0.0, 1.0, is_whole=True),)
+        return (PackageKnob(name, parts[0], 0.0, 1.0, is_whole=True),)
     low, high = max(value.low, value.minimum), min(value.high, value.maximum)
     if low == float("-inf") or high == float("inf") or low >= high:
         low, high = 0.0, max(1.0, *(2.0 * part for part in parts))
     low, high = min(low, *parts), max(high, *parts)
     many = len(parts) > 1
     return tuple(
-        Knob(f"{name}.{at}" if many else name, part, low, high, value.type == "int") for at, part in enumerate(parts)
+        PackageKnob(f"{name}.{at}" if many else name, part, low, high, value.type == "int")
+        for at, part in enumerate(parts)
     )

@@ -13,7 +13,7 @@ from ...graph import Graph, Port
 from ...inputs.provider import MediaProvider
 from ..order import ExportOrder
 from .curves import PairSamples
-from .knobs import FRAME, Knob, Point, find_controls
+from .knobs import FRAME, PackageKnob, Point, find_controls
 from .sampling import BESIDE, KnobSampler, Sample, take_apart
 from .variants import Span
 
@@ -76,14 +76,14 @@ class PointPlanner:
             self._samples[key] = take_apart(self.plan(point, phase), self.provider.load_pixels)
         return self._samples[key]
 
-    def take_like(self, rest: Sample, point: Point, knob: Knob, phase: Phase) -> Sample | None:
+    def take_like(self, rest: Sample, point: Point, knob: PackageKnob, phase: Phase) -> Sample | None:
         """The sample at a point, or beside it where a node is left out; None where the passes are others anyway."""
         sample = self.take(point, phase)
         if sample.structure != rest.structure and not knob.is_whole:
             sample = self.take({**point, knob.name: _step_aside(point[knob.name], knob)}, phase)
         return sample if sample.structure == rest.structure else None
 
-    def find_base(self, knobs: list[Knob], phase: Phase) -> dict[str, float]:
+    def find_base(self, knobs: list[PackageKnob], phase: Phase) -> dict[str, float]:
         """A point near the settings of the graph at which no node is left out."""
         base = {knob.name: knob.rest for knob in knobs}
         for knob in knobs:
@@ -94,13 +94,13 @@ class PointPlanner:
                 base = beside
         return base
 
-    def sample_knob(self, knob: Knob, base: Point, phase: Phase) -> dict[float, Sample]:
+    def sample_knob(self, knob: PackageKnob, base: Point, phase: Phase) -> dict[float, Sample]:
         """Samples over the range of a knob, while all others rest."""
         is_dense = knob.name == FRAME and bool(self.graph.animation)
         return KnobSampler(lambda point: self.take(point, phase), base, knob, is_dense).sample_range()
 
     def sample_checks(
-        self, middle: Point, knobs: list[Knob], spans: Mapping[str, Span], rest: Sample, phase: Phase
+        self, middle: Point, knobs: list[PackageKnob], spans: Mapping[str, Span], rest: Sample, phase: Phase
     ) -> list[tuple[Point, Sample]]:
         """Samples at points where all knobs are elsewhere."""
         random = np.random.default_rng(7)
@@ -135,7 +135,7 @@ class PointPlanner:
         return first, min(last, first + MAX_FRAMES - 1)
 
 
-def _step_aside(x: float, knob: Knob) -> float:
+def _step_aside(x: float, knob: PackageKnob) -> float:
     step = (knob.high - knob.low) * BESIDE
     return x + step if x + step <= knob.high else x - step
 

@@ -13,7 +13,7 @@ from msgspec import Struct
 from ...compiler import Plan
 from ...errors import HalationError
 from ...resources.picture import Picture
-from .knobs import Knob, Point
+from .knobs import PackageKnob, Point
 
 FIRST_STEPS = 3
 """Steps between the first samples of a knob; where numbers bend or passes change, samples between follow."""
@@ -101,7 +101,7 @@ class KnobSampler:
 
     take: Callable[[Point], Sample]
     base: Point
-    knob: Knob
+    knob: PackageKnob
     is_dense: bool = False
     """Whether all whole numbers of the range are sampled: keys of an animation may be anywhere."""
     samples: dict[float, Sample] = field(default_factory=dict[float, Sample])
