@@ -137,7 +137,7 @@ def test_masks_files_and_alpha_are_refused(cli, graphs, shot, tmp_path: Path) ->
     [
         (["-o", "a.xyz"], 2, "its ending does not say"),
         ([], 2, "say what to write with --to"),
-        (["--to", "book"], 2, "choose one of isf, cube"),
+        (["--to", "book"], 2, "choose one of isf, web"),
         (["--to", "cube"], 2, "name the file"),
         (["-o", "a.cube", "--lut-size", "1"], 2, "--lut-size 1"),
         (["-o", "a.cube", "--range", "3"], 2, "--range 3"),
