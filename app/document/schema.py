@@ -26,6 +26,7 @@ Schema = dict[str, Any]
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 _PORT: Schema = {"type": "string", "pattern": r"^[^.]+\.[^.]+$"}
+_VALUE_PATH: Schema = {"type": "string", "pattern": r"^[^.]+\.[^.]+(\.[^.]+\.[^.]+)?$"}
 _NAME: Schema = {"pattern": "^[^./\\u0000-\\u001f\\u007f]+$"}
 _LENGTH_UNIT: Schema = {"type": "string", "pattern": r"^(px|height|px@[1-9]\d{0,4})$"}
 _NUMBERS: Schema = {"type": "array", "items": {"type": "number"}}
@@ -132,10 +133,10 @@ def _graph() -> Schema:
         settings=_record(records.SettingsRecord, color=color),
         inputs=_entries(_record(records.InputRecord, type=type_names), _NAME),
         outputs=_entries(_record(records.OutputRecord, type=type_names), _NAME),
-        controls=_entries(_record(records.ControlRecord, target=_PORT), _NAME),
+        controls=_entries(_record(records.ControlRecord, target=_VALUE_PATH), _NAME),
         nodes=_entries({"$ref": "#/$defs/node"}, nodes),
         links=_entries(_PORT, _PORT),
-        animation=_entries({"$ref": "#/$defs/animation"}, _PORT),
+        animation=_entries({"$ref": "#/$defs/animation"}, _VALUE_PATH),
     )
 
 

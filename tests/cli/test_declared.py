@@ -89,7 +89,7 @@ def run_alone(folder: Path, commands: list[list[str]]) -> str:
 
 def test_the_extras_are_blocked():
     assert {"scipy", "cv2", "pytest"} <= set(find_blocked()) and distribution("halation")
-    assert not {"halation", "numpy", "trimesh", "OpenImageIO", "PyOpenColorIO", "click"} & set(find_blocked())
+    assert not {"halation", "numpy", "trimesh", "OpenImageIO", "PyOpenColorIO", "typer"} & set(find_blocked())
 
 
 def scene(name: str) -> dict[str, object]:
@@ -145,7 +145,7 @@ def test_the_demo_and_every_command(tmp_path):
     run_alone(tmp_path, commands)
 
 
-OPTIONAL = {"av": "the extra 'video'", "pytest": "the plug-in of pytest, which loads it"}
+OPTIONAL = {"av": "the extra 'video'", "pyoidn": "the extra 'denoise'", "pytest": "the plug-in of pytest, which loads it"}
 
 
 def test_every_import_is_declared():

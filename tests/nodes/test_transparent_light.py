@@ -18,6 +18,7 @@ CUBE = str(Path(__file__).parents[1] / "data/warm.cube")
 COVERED = {
     "premultiply": "multiplies light by alpha: that is what it is for",
     "gradient_map": "replaces the color of surfaces, and where nothing is covered there is no surface",
+    "edge_extend": "gives soft pixels the color of solid ones, and where nothing is covered there is none",
     "canny": "draws lines on surfaces",
     "difference_of_gaussians": "draws ink on surfaces",
     "emboss": "draws a relief of surfaces",

@@ -22,7 +22,7 @@ from halation.renderer.execution import decoding, executor
 from halation.renderer.execution.costs import PassCosts
 from halation.renderer.execution.executor import Executor
 from halation.renderer.execution.runner import Runner
-from halation.renderer.jobs import job
+from halation.renderer.jobs import pipeline
 from halation.renderer.jobs.job import OutputSettings, run_job
 from halation.renderer.jobs.video_writers import VideoWriters
 from halation.renderer.opengl import device as opengl_device
@@ -102,7 +102,7 @@ def test_a_benchmark_tells_what_happens_once_from_what_repeats(engine, monkeypat
 
 
 def test_a_job_tells_planning_rendering_and_writing_apart(engine, monkeypatch, tmp_path):
-    clock = FakeClock(monkeypatch, job)
+    clock = FakeClock(monkeypatch, pipeline)
     plans = clock.slow_down(FrameRenderer, "plan_frame", 1.0)
     clock.slow_down(FrameRenderer, "start_runs", 10.0)
     clock.slow_down(Runner, "download", 20.0)

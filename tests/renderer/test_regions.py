@@ -38,17 +38,23 @@ REGIONS = (Region(0, 0, 20, 13), Region(120, 60, 21, 9), Region(240, 0, 11, 131)
 ANYWHERE = frozenset(
     {
         "auto_exposure",
+        "corner_pin",
+        "denoise",
         "dilate_erode",
         "directional_occlusion",
         "displace",
         "distance_field",
+        "edge_extend",
         "eye_glare",
+        "fill_holes",
+        "inpaint",
         "kaleidoscope",
         "kernel_glare",
         "luminance_statistics",
         "panorama",
         "photoreceptor_tone_map",
         "polar",
+        "screen_clean_plate",
         "st_map",
         "sun_beams",
     }
