@@ -14,6 +14,11 @@ MAX_WAITING_REQUESTS = 1000
 """Requests of one client that may wait: a choice, more than clients send before they read a reply."""
 
 
+SIGNAL_INTERVAL = 0.25
+"""Seconds of one wait for requests. A signal that arrives just before Python waits for a lock is heard only afterwards:
+without a limit a server that is asked to end right after a reply would wait for ever."""
+
+
 class ServiceClient:
     """Who sends requests. `send` takes a reply; it returns without an error after the client has gone."""
 
@@ -74,4 +79,4 @@ class RequestQueue:
                         return client, waiting.popleft()
                 if self._is_closed:
                     return None
-                self._changed.wait()
+                self._changed.wait(SIGNAL_INTERVAL)

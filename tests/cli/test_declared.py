@@ -145,7 +145,11 @@ def test_the_demo_and_every_command(tmp_path):
     run_alone(tmp_path, commands)
 
 
-OPTIONAL = {"av": "the extra 'video'", "pyoidn": "the extra 'denoise'", "pytest": "the plug-in of pytest, which loads it"}
+OPTIONAL = {
+    "av": "the extra 'video'",
+    "pyoidn": "the extra 'denoise'",
+    "pytest": "the plug-in of pytest, which loads it",
+}
 
 
 def test_every_import_is_declared():

@@ -82,7 +82,7 @@ def test_its_pixels_are_sound(renderer, node, trial):
 
 @rendered
 def test_some_values_change_the_picture(node):
-    """The trials need them: a node that is taken for a neutral one is not drawn. A switch never changes its pictures."""
+    """The trials need them: a node that is taken for a neutral one is not drawn. A switch changes nothing."""
     passed_on = node(**find_changing_values(node, CUBE)).identity()
     assert passed_on == ("a" if node.id == "select" else None)
 
