@@ -57,8 +57,8 @@ def test_cached_equals_uncached(engines, renderer, seed):
 
 OPEN = pytest.mark.xfail(
     strict=True,
-    reason="two solutions of inpaint begin with the same passes: their pictures are kept from the first to the second, "
-    "and the plan counts them as if each was made when it is read",
+    reason="inpaint is made once for an Image and once for a Field: passes of both make the same pixels, which are "
+    "kept from the first to the second, and the plan counts them as if each was made when it is read",
 )
 """A fault that is known and open: more memory is used than the plan says."""
 
