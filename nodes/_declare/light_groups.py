@@ -8,6 +8,7 @@ from msgspec import Struct
 from msgspec.structs import fields as fields_of
 
 from .items import ItemSet, NamedItem
+from .lights import Temperature
 from .values import Doc, ItemKind, Items, Slider, Swatch, read_value
 
 
@@ -17,17 +18,7 @@ class LightGroup(Struct, frozen=True):
     on: Annotated[bool, Doc("Whether its light is there.")] = True
     solo: Annotated[bool, Doc("While any group is solo, only those are there.")] = False
     color: Annotated[tuple[float, float, float], Swatch(), Doc("Multiplied by its light.")] = (1.0, 1.0, 1.0)
-    temperature: Annotated[
-        float,
-        Slider(
-            0.0,
-            12000.0,
-            unit="K",
-            minimum=0.0,
-            maximum=15000.0,
-            doc="The color of a lamp in kelvin, which is multiplied by the color. 0: the color alone.",
-        ),
-    ] = 0.0
+    temperature: Temperature = 0.0
     exposure: Annotated[float, Slider(-6.0, 6.0, unit="EV", doc="Doubles its light with each stop.")] = 0.0
 
 

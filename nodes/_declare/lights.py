@@ -42,6 +42,18 @@ _Way = Annotated[
 _Reach = Annotated[
     float, Slider(0.0, 20.0, unit="scene", minimum=0.0, doc="The distance at which it has faded out; 0: no limit.")
 ]
+Temperature = Annotated[
+    float,
+    Slider(
+        0.0,
+        12000.0,
+        unit="K",
+        minimum=0.0,
+        maximum=15000.0,
+        doc="The color of a lamp in kelvin, which is multiplied by the color: candle 1850, bulb 2850, noon 5500, "
+        "shade 8000. 0: the color alone.",
+    ),
+]
 
 
 class Light(Struct, frozen=True):
@@ -78,18 +90,7 @@ class Light(Struct, frozen=True):
         Slider(0.0, 2.0, unit="scene", minimum=0.0, doc="The radius. A larger one has wider reflections."),
     ] = 0.1
     on: Annotated[bool, Doc("Whether it shines.")] = True
-    temperature: Annotated[
-        float,
-        Slider(
-            0.0,
-            12000.0,
-            unit="K",
-            minimum=0.0,
-            maximum=15000.0,
-            doc="The color of a lamp in kelvin, which is multiplied by the color: candle 1850, bulb 2850, noon 5500, "
-            "shade 8000. 0: the color alone.",
-        ),
-    ] = 0.0
+    temperature: Temperature = 0.0
     exposure: Annotated[float, Slider(-6.0, 6.0, unit="EV", doc="Doubles the intensity with each stop.")] = 0.0
     solo: Annotated[bool, Doc("While any light is solo, only those shine.")] = False
     width: Annotated[float, Slider(0.0, 5.0, unit="scene", minimum=0.0, doc="From its left to its right edge.")] = 1.0

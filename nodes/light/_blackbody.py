@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-_COOLEST, _HOTTEST = 1000.0, 15000.0
+COOLEST, HOTTEST = 1000.0, 15000.0
 """The range of Krystek's formula, in kelvin. Outside of it the nearest color is taken."""
+
+LUMINANCE = (0.2126729, 0.7151522, 0.0721750)
+"""The luminance of linear Rec.709: the row that belongs to the matrix below."""
 
 
 def blackbody_chromaticity(kelvin: float) -> tuple[float, float]:
     """The CIE 1931 chromaticity x, y of a black body (Krystek 1985, in CIE 1960 uv: exact to 0.0001)."""
-    t = min(max(kelvin, _COOLEST), _HOTTEST)
+    t = min(max(kelvin, COOLEST), HOTTEST)
     u = (0.860117757 + 1.54118254e-4 * t + 1.28641212e-7 * t * t) / (1.0 + 8.42420235e-4 * t + 7.08145163e-7 * t * t)
     v = (0.317398726 + 4.22806245e-5 * t + 4.20481691e-8 * t * t) / (1.0 - 2.89741816e-5 * t + 1.61456053e-7 * t * t)
     scale = 2.0 * u - 8.0 * v + 4.0
@@ -25,5 +28,5 @@ def blackbody_rec709(kelvin: float) -> tuple[float, float, float]:
         0.0556434 * big_x - 0.2040259 + 1.0572252 * big_z,
     )
     red, green, blue = (max(part, 0.0) for part in rgb)
-    luminance = 0.2126729 * red + 0.7151522 * green + 0.0721750 * blue
+    luminance = sum(weight * part for weight, part in zip(LUMINANCE, (red, green, blue), strict=True))
     return red / luminance, green / luminance, blue / luminance

@@ -10,16 +10,12 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from halation.nodes.light._blackbody import blackbody_rec709
+from halation.nodes.light._blackbody import COOLEST, HOTTEST, LUMINANCE, blackbody_rec709
 
 if TYPE_CHECKING:
     from .colors import RGBA
 
-COOLEST, HOTTEST = 1000.0, 15000.0
-"""The range in which the color of a black body is known to the formula of Krystek (1985), in kelvin."""
-
 _HALF_ROOT = math.sqrt(3.0) / 2.0
-_LUMA = (0.2126729, 0.7151522, 0.0721750)
 
 
 def split_balance(color: RGBA) -> tuple[float, float, float]:
@@ -35,7 +31,7 @@ def join_balance(level: float, x: float, y: float, alpha: float = 1.0) -> RGBA:
 
 def set_temperature(color: RGBA, kelvin: float) -> RGBA:
     """The light of a black body of a temperature, as bright as the color; of brightness 1 if that is black."""
-    luminance = sum(weight * part for weight, part in zip(_LUMA, color[:3], strict=True))
+    luminance = sum(weight * part for weight, part in zip(LUMINANCE, color[:3], strict=True))
     luminance = luminance if luminance > 0.0 else 1.0
     red, green, blue = (part * luminance for part in blackbody_rec709(kelvin))
     return red, green, blue, color[3]

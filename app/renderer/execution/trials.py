@@ -215,6 +215,8 @@ class Trials(Struct, eq=False):
 
     def find_slowness(self, plan: Plan, render_pass: Pass, software: bool) -> DeviceError | None:
         """The error to raise if a pass would take far longer than the time limit, by what its trial took."""
+        if not render_pass.writers:
+            return None  # nothing of it was tried: the usual case, and looking for a program takes time
         trial, limit = self._known.get(render_pass.shader), MARGIN * self.process.timeout
         if not limit or trial is None or not trial.done() or trial.cancelled():
             return None
