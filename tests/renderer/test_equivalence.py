@@ -55,24 +55,16 @@ def test_cached_equals_uncached(engines, renderer, seed):
     same_bits(first, engines["compute", True].render(graph, wanted))
 
 
-OPEN = pytest.mark.xfail(
-    strict=True,
-    reason="inpaint is made once for an Image and once for a Field: passes of both make the same pixels, which are "
-    "kept from the first to the second, and the plan counts them as if each was made when it is read",
-)
-"""A fault that is known and open: more memory is used than the plan says."""
-
-
-@pytest.mark.parametrize("seed", [pytest.param(seed, marks=OPEN) if seed == 19 else seed for seed in range(24)])
+@pytest.mark.parametrize("seed", range(24))
 def test_measured_peak_is_the_planned_one(seed):
     engine = Renderer(open_device(sandbox=UNRESTRICTED), budget=0, sandbox=UNRESTRICTED)
     wanted = RenderRequest(pictures(seed), precision="float")
     plan = engine.compile(random_graph(seed), wanted)
     engine.runner.run(plan)
     peak = engine.runner.textures.peak
-    # Surfaces of one key are made once, and one frame alone keeps nothing for the next.
-    saved = plan.memories or len({surface.key for surface in plan.surfaces}) < len(plan.surfaces)
-    assert peak <= plan.peak_bytes if saved else peak == plan.peak_bytes
+    assert len({surface.key for surface in plan.surfaces}) == len(plan.surfaces)
+    # One frame alone keeps nothing for the next.
+    assert peak <= plan.peak_bytes if plan.memories else peak == plan.peak_bytes
     engine.close()
 
 

@@ -13,13 +13,15 @@ from ..areas import Neighborhood
 
 
 class PictureShape(Struct, frozen=True, gc=False):
-    """Size and channels of a picture. `data` (depth, ids, measurements) always keeps 32 bits."""
+    """Size and channels of a picture. `data` (depth, ids, measurements) always keeps 32 bits.
+
+    `data` is a part of the identity of an operation, though no pixel depends on it where colors have 32 bits as well:
+    equal keys then mean equal operations, and two results of one pass never share a texture.
+    """
 
     size: Size
     channels: int
     data: bool
-
-    identity_exclude: ClassVar[Mapping[str, str]] = {"data": "it decides the format of a texture, which is hashed"}
 
 
 class Memory(Struct, frozen=True):
