@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -329,3 +332,48 @@ def test_calls_that_make_no_sense(tmp_path: Path, rng: Random) -> None:
     assert "one size, but there are 'image' 13x9, 'n' 4x4" in refused(
         tmp_path / "a.exr", {**image, "n": vectors}, {**IMAGE, "n": Kind.VECTOR}
     )
+
+
+def test_srgb_and_linear_rec709_are_tagged_as_openimageio_does_without_its_color_config(tmp_path: Path) -> None:
+    """Loading the config takes as long as writing a small picture. It announces itself, if it is asked to."""
+    code = (
+        "import sys, numpy as np, OpenImageIO as oiio\n"
+        "from halation.media import write_picture\n"
+        "from halation.nodes import Kind\n"
+        "from halation.resources.sandbox import UNRESTRICTED\n"
+        "layers = {'image': np.ones((2, 2, 4), np.float32), 'Z': np.ones((2, 2, 1), np.float32)}\n"
+        "kinds = {'image': Kind.IMAGE, 'Z': Kind.FIELD}\n"
+        "for name in sys.argv[1:]:\n"
+        "    chosen = layers if name.endswith('.exr') else {'image': layers['image']}\n"
+        "    write_picture(name, chosen, kinds=kinds, sandbox=UNRESTRICTED)\n"
+        "print('written')\n"
+        "spec = oiio.ImageSpec(2, 2, 3, 'uint8')\n"
+        "spec.attribute('oiio:ColorSpace', 'srgb_rec709_scene')\n"
+        "oiio.ImageOutput.create('jpeg').open(sys.argv[1] + '.jpg', spec)\n"
+    )
+    names = [str(tmp_path / f"a.{ending}") for ending in ("exr", "png", "jpg", "tif", "webp", "hdr", "dpx")]
+    environment = {**os.environ, "OIIO_DEBUG_COLOR": "1"}
+    run = subprocess.run([sys.executable, "-c", code, *names], env=environment, capture_output=True, text=True)
+    before, _, after = run.stdout.partition("written")
+    assert run.returncode == 0 and "OCIO" not in before and "OCIO" in after, run.stdout + run.stderr
+    tags = [spec.get_string_attribute("oiio:ColorSpace") for name in names[:4] for spec, _ in parts(Path(name))]
+    assert tags == ["lin_rec709_scene", "data", "srgb_rec709_scene", "srgb_rec709_scene", "srgb_rec709_scene"]
+
+
+@pytest.mark.parametrize("ending", ["png", "jpg", "tif"])
+def test_bytes_are_those_of_an_explicit_tag(tmp_path: Path, ending: str) -> None:
+    codes = np.full((2, 2, 3), 128, np.uint8)
+    light = np.full((2, 2, 3), 0.2158605, np.float32)  # code 128 of sRGB
+    write_picture(tmp_path / f"a.{ending}", {"image": light}, kinds=IMAGE, view="Un-tone-mapped", sandbox=UNRESTRICTED)
+    spec = oiio.ImageSpec(2, 2, 3, "uint8")
+    for name, value in (
+        ("DateTime", ""),
+        ("oiio:ColorSpace", "srgb_rec709_scene"),
+        ("oiio:UnassociatedAlpha", 1),
+        ("compression", {"png": "", "jpg": "jpeg:95", "tif": "zip"}[ending]),
+        ("jpeg:subsampling", "4:4:4"),
+    ):
+        spec.attribute(name, value)
+    output = oiio.ImageOutput.create(ending)
+    assert output.open(str(tmp_path / f"b.{ending}"), spec) and output.write_image(codes) and output.close()
+    assert (tmp_path / f"a.{ending}").read_bytes() == (tmp_path / f"b.{ending}").read_bytes()
