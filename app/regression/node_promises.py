@@ -22,7 +22,7 @@ from ..graph import Graph, Input, Output, Port
 
 if TYPE_CHECKING:
     from ..glsl.text import GlslFunction
-    from ..renderer import Renderer
+    from ..renderer import Renderer, RenderRequest
 
 Pictures = dict[str, np.ndarray]
 
@@ -237,6 +237,13 @@ def render_node(
     renderer: Renderer, node: Node, pictures: Mapping[str, np.ndarray], size: tuple[int, int] | None = None
 ) -> dict[str, np.ndarray]:
     """Every output of a node with these pictures, and a camera wherever one is taken."""
+    return renderer.render(*make_node_request(node, pictures, size))
+
+
+def make_node_request(
+    node: Node, pictures: Mapping[str, np.ndarray], size: tuple[int, int] | None = None
+) -> tuple[Graph, RenderRequest]:
+    """A graph of a node alone, and a request for all that it makes of these pictures, and of a camera."""
     from ..renderer import RenderRequest
 
     graph = Graph().add("node", node)
@@ -253,7 +260,7 @@ def render_node(
         graph = graph.add_output(name, Output(output.socket.kind, output.socket.channels))
         graph = graph.connect(Port("node", name), Port("outputs", name))
     targets = {name: Port("node", name) for name in type(node).outputs}
-    return renderer.render(graph, RenderRequest(dict(pictures), targets, size, precision="float"))
+    return graph, RenderRequest(dict(pictures), targets, size, precision="float")
 
 
 TRIALS: Mapping[str, Callable[[Renderer, type[Node], str], Iterator[str]]] = MappingProxyType(

@@ -11,8 +11,8 @@ from halation.nodes import Size
 from ...custom_nodes import CustomNode
 from ...errors import HalationError, ShaderError
 from ...graph import Graph, Group
-from ...regression.node_promises import make_pictures, render_node
-from ...renderer import Renderer
+from ...regression.node_promises import make_node_request, make_pictures
+from ...renderer import Renderer, Run
 from .work import PreviewWork
 
 _SIZE: Size = (4, 4)
@@ -20,45 +20,68 @@ _SIZE: Size = (4, 4)
 
 
 class CodeCheck:
-    """Renders each node of code once, alone and tiny, and remembers what was wrong. Nodes of the same code share it."""
+    """Renders each node of code once, alone and tiny, and remembers what was wrong. Nodes of the same code share it.
+
+    It works in small steps and never waits: a compiler may take a minute over a few lines.
+    """
 
     def __init__(self, renderer: Renderer) -> None:
         self._renderer = renderer
         self._errors: WeakKeyDictionary[type[CustomNode], ShaderError | None] = WeakKeyDictionary()
+        self._checked: type[CustomNode] | None = None
+        """The code that `_run` renders."""
+        self._run: Run | None = None
+        self._lease = renderer.runner.create_lease()
 
     def is_behind(self, work: PreviewWork) -> bool:
-        """True while there is code in the graph that was not tried yet, or whose errors were not added to the work."""
+        """True while there is code in the graph that was not tried yet, or whose errors were not added to the work.
+
+        Code that a picture has found at fault is not tried again.
+        """
         return any(
-            type(node) not in self._errors or (self._errors[type(node)] is not None and path not in work.faults)
+            path not in work.faults and self._errors.get(type(node), node) is not None
             for path, node in _list_code_nodes(work.wish.graph, "")
         )
 
     def add_faults(self, work: PreviewWork) -> bool:
-        """Add the errors that rendering did not find; True if there are new ones.
-
-        One node at most is tried in a call, so that no frame of the window takes long.
-        """
-        faults, has_tried = dict[str, HalationError](), False
-        for path, node in _list_code_nodes(work.wish.graph, ""):
-            if type(node) not in self._errors:
-                if has_tried:
-                    break
-                has_tried = True
-                self._errors[type(node)] = self._try(node)
-            error = self._errors[type(node)]
-            if error is not None and path not in work.faults:
+        """Do a step, and add the errors that rendering did not find; True if there are new ones."""
+        faults = dict[str, HalationError]()
+        nodes = {path: node for path, node in _list_code_nodes(work.wish.graph, "") if path not in work.faults}
+        untried = {type(node): node for node in nodes.values() if type(node) not in self._errors}
+        if self._checked not in untried:
+            self.clear()
+        if untried:
+            self._step(untried[self._checked] if self._checked else next(iter(untried.values())))
+        for path, node in nodes.items():
+            if error := self._errors.get(type(node)):
                 faults[path] = ShaderError(path, error.file, error.line, error.fault)
         work.faults |= faults
         return bool(faults)
 
-    def _try(self, node: CustomNode) -> ShaderError | None:
+    def clear(self) -> None:
+        """Give up what has begun. What was found stays known."""
+        if self._run is not None:
+            self._run.close()
+        self._lease.close()
+        self._checked = self._run = None
+
+    def _step(self, node: CustomNode) -> None:
+        """Compile the code, or run one more of its passes unless that would wait."""
+        error = None
         try:
-            render_node(self._renderer, node, make_pictures(type(node), _SIZE, np.random.default_rng(0)), _SIZE)
-        except ShaderError as error:
-            return error
+            if self._run is None:
+                pictures = make_pictures(type(node), _SIZE, np.random.default_rng(0))
+                plan = self._renderer.compile(*make_node_request(node, pictures, _SIZE))
+                self._run, self._checked = self._renderer.runner.start_run(plan, self._lease), type(node)
+                return
+            if not self._run.is_ready or next(self._run, None) is not None:
+                return
+        except ShaderError as fault:
+            error = fault
         except HalationError:  # about what it lacks, which its own graph may have
-            return None
-        return None
+            pass
+        self._errors[type(node)] = error
+        self.clear()
 
 
 def _list_code_nodes(graph: Graph, inside: str) -> Iterator[tuple[str, CustomNode]]:

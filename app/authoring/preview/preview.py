@@ -247,6 +247,7 @@ class Preview:
     def _forget(self) -> None:
         """Start again, without any frames."""
         self._restart()
+        self._code.clear()
         for take in self._takes:
             take.close()
         self._takes = []
@@ -297,8 +298,7 @@ class Preview:
         for name in filter(ports.__contains__, images):
             self._shelf.show(name, ports[name], wish, images[name])
         skimmed = bool(images and self.skims)
-        queue = [ports] if ports and not skimmed else []
-        self._round = PreviewWork(wish, queue, self.clock(), from_cache_only=skimmed)
+        self._round = PreviewWork(wish, [ports] if ports and not skimmed else [], self.clock(), from_cache_only=skimmed)
         self._settle(self._round)
 
     def _may_restart(self, wish: PreviewRequest) -> bool:

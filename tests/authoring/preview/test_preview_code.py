@@ -48,6 +48,18 @@ def test_no_step_waits_for_a_compiler(preview) -> None:
     assert waits > 10  # a step that waited for the compiler would be the only one
 
 
+def test_no_step_waits_for_code_that_nothing_reads(preview) -> None:
+    unread = node_type(Code("glsl", fresh(60)))()
+    preview.want(chain(fresh(1)).add("unread", unread), {"A": Port("user", "out")})
+    finish(preview)  # the picture is there, and the other code is tried from now on
+    waits, end = 0, time.monotonic() + 120.0
+    while preview.work(0.01) and time.monotonic() < end:
+        waits += 1
+        time.sleep(0.005)
+    assert not preview.faults
+    assert waits > 10
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="it lists the processes of this one")
 def test_a_compiler_that_dies_is_a_fault_of_the_node(preview) -> None:
     graph = chain("vec4 f(vec4 image) { float a[16000]; a[int(image.r * 1e6)] = 1.0; return vec4(a[int(image.g)]); }")
@@ -58,7 +70,8 @@ def test_a_compiler_that_dies_is_a_fault_of_the_node(preview) -> None:
         for child in (task / "children").read_text().split():
             if b"trial_worker" in Path(f"/proc/{child}/cmdline").read_bytes():
                 os.kill(int(child), signal.SIGSEGV)
-    finish(preview)
+    while preview.work(0.01):  # nobody tries it a second time
+        time.sleep(0.005)
     assert "SIGSEGV" in str(preview.faults["user"])
     preview.want(chain(fresh(2)), {"A": Port("user", "out")})
     finish(preview)
