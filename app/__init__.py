@@ -108,7 +108,7 @@ def render_frames(
 
     An input may also be bound to a function that makes the picture of a frame; it is called on the thread that renders.
     Whatever the order, a frame is always the same: nodes with a memory are led up to it from the first frame of the
-    graph, or by its pre-roll.
+    graph, or by its pre-roll. Arguments are checked while another thread loads the renderer.
     """
     from .scripting import arguments
     from .scripting.threads import choose_thread

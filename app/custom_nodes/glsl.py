@@ -45,7 +45,11 @@ class _Parameter(Struct, frozen=True):
 
 @lru_cache(MAX_CLASSES)
 def make_glsl_class(code: Code) -> type[CustomNode]:
-    """The class of the nodes that this code describes. Raises CodeFault."""
+    """The class of the nodes that this code describes. Raises CodeFault.
+
+    The code is parsed twice. The text as it was written has the comments that describe sockets and values; the expanded
+    text, in which no macro can hide a word, is what is checked and compiled.
+    """
     check_length(code.text)
     source = unify_lines(code.text)
     plain = blank_comments(source)
@@ -176,7 +180,8 @@ def _read_parameters(source: str, plain: str, entry: GlslFunction) -> Iterator[_
         is_last = number + 1 == len(starts)
         end = closing if is_last else starts[number + 1] - 1
         declaration = plain[begin:end].split()
-        line = plain.count("\n", 0, begin + len(plain[begin:end]) - len(plain[begin:end].lstrip())) + 1
+        first = begin + len(plain[begin:end]) - len(plain[begin:end].lstrip())
+        line = plain.count("\n", 0, first) + 1
         words = [word for word in declaration if word not in ("in", "const", "highp", "mediump", "lowp")]
         out = bool(words) and words[0] == "out"
         words = words[1:] if out else words
@@ -186,7 +191,7 @@ def _read_parameters(source: str, plain: str, entry: GlslFunction) -> Iterator[_
             )
         stop = source.find("\n", end)
         comment_after = COMMENT.search(source, end, len(source) if stop < 0 else stop)
-        comment_inside = COMMENT.search(source, begin + len(plain[begin:end]) - len(plain[begin:end].lstrip()), end)
+        comment_inside = COMMENT.search(source, first, end)
         comment = comment_inside or (
             comment_after if comment_after and not plain[end + 1 : comment_after.start()].strip(" \t){") else None
         )

@@ -35,7 +35,11 @@ def export_page(order: ExportOrder) -> ExportReport:
 
 
 def make_page(package: Package, order: ExportOrder) -> str:
-    """The page as text."""
+    """The page as text.
+
+    Everything is packed into the page, because browsers let no page that was opened from disk read other files. Base64
+    also keeps names and notes of the graph from ending the script.
+    """
     document = package.document
     programs = [
         {"fragment": write_es300(fragment), "vertex": write_es300(vertex) if vertex else ""}

@@ -150,6 +150,11 @@ class GraphChecker(Struct, dict=True, eq=False):
     def _report(
         self, file: str, text: str, whole_graph: Graph | None, problems: Iterator[tuple[Problem, int, int]]
     ) -> CheckReport:
+        """The report of one file: allowed problems are left out, then only the worst are kept.
+
+        An allowance is called stale only if its rule was sure to find what it allows: not a rule that is off or that
+        depends on other files, and none at all where an error ended the check early.
+        """
         reported, used = list[tuple[Problem, int, int]](), set[str]()
         allowing_graph = whole_graph if whole_graph is not None and whole_graph.settings.allow else None
         for item in problems:

@@ -88,6 +88,10 @@ def _read_cases(path: Path, name: str, own: TomlTable, defaults: TomlTable) -> I
 
 
 def _read_case(path: Path, name: str, graph: Path, own: TomlTable, both: TomlTable) -> Case:
+    """Read one case: `own` is its table, `both` the same over the defaults of the suite.
+
+    A case with a metric of its own does not take the suite's tolerance: that number belongs to the suite's metric.
+    """
     if "metric" in own.items and "tolerance" not in own.items:
         both = both.drop_key("tolerance")
     metric = both.read_choice("metric", tuple(METRICS), "max_rel")

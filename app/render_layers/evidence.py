@@ -312,7 +312,11 @@ def _find_unit(ratios: tuple[float, float], size: tuple[int, int]) -> tuple[tupl
 
 def match_velocity_with_pictures(velocity: Array, here: Array, before: Array) -> Convention | None:
     """The direction of motion [h, w, 2] in pixels: the one of four that maps the picture [h, w, 3] before best to this
-    one; None if nothing moves or none is clearly better."""
+    one; None if nothing moves or none is clearly better.
+
+    Pixels that appear from behind others have nothing to match in the frame before, so the worst tenth is left out. The
+    logarithm keeps a few bright lights from deciding alone.
+    """
     height, width = velocity.shape[:2]
     rows, columns = sample_pixels((width, height), 4 * SAMPLES)
     stored = velocity[rows, columns, :2].astype(np.float64)

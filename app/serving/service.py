@@ -118,7 +118,11 @@ class RenderService:
         return {"written": [str(path) for path in report.written]}
 
     def _make_thumbnail(self, request: ServiceRequest, check_request: Callable[..., None]) -> dict[str, Any]:
-        """A small PNG of the first output, as base64."""
+        """A small PNG of the first output, as base64.
+
+        A frame is planned at full size first, because only the plan knows how wide the picture is; then it is rendered
+        at the scale that gives the requested width.
+        """
         from halation.nodes import Kind
 
         from .. import media

@@ -73,7 +73,8 @@ class Node:
         """Read the declaration; that of an `abstract` class, which has no instances, is left to its subclasses.
 
         Values come in the order of the class body, with inherited ones after them: that is the order of the parameters
-        of its GLSL function.
+        of its GLSL function. The names of the body are noted before the mask is added: its values are no parameters.
+        The dataclass is made after that, so that they are fields like all others.
         """
         super().__init_subclass__(**kwargs)
         if abstract:

@@ -88,6 +88,10 @@ class Canny(Filter):
         return {"width": 0.0, **values}
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        """Find ridges, follow weak ones from strong ones a few pixels per draw, then widen the lines.
+
+        A wide line is a square around each pixel of a thin one, drawn along the columns and then along the rows.
+        """
         spacing = space_pixels(self.width)
         tone = draw.point("canny_tone", self.image, result=Field())
         gradient = draw(

@@ -102,6 +102,9 @@ class DifferenceOfGaussians(Filter):
         return {"out": draw.point("difference_of_gaussians", self.image, value=value, kind=self.kind), "value": value}
 
     def _blur_along_edges(self, draw: Draw, tone: Drawn) -> tuple[Drawn, Drawn]:
+        """The two blurs, across the lines only. The smoothed structure tensor says which way the lines run; both blurs
+        are the channels of one picture, so that its directions are followed once for both.
+        """
         changes = draw("difference_of_gaussians_changes", tone=tone, edge=self.edge, overlap=1, result=Vector(width=3))
         tensor = draw.blur(changes, self.smoothing, self.edge)
         blurs = draw(

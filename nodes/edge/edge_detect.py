@@ -56,27 +56,18 @@ class EdgeDetect(Filter):
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         spacing = space_pixels(self.width)
         image = draw.blur(self.image, spacing.sigma, self.edge)
-        out = draw(
-            "edge_detect",
-            image=image,
-            edge=self.edge,
-            overlap=spacing.step,
-            operator=self.operator,
-            channels=self.channels,
-            strength=self.strength * spacing.gain,
-            threshold=self.threshold / spacing.gain,
-            spacing=spacing.step,
-        )
-        magnitude = draw(
-            "edge_detect_magnitude",
-            image=image,
-            edge=self.edge,
-            overlap=spacing.step,
-            result=Field(),
-            operator=self.operator,
-            channels=self.channels,
-            strength=self.strength * spacing.gain,
-            threshold=self.threshold / spacing.gain,
-            spacing=spacing.step,
-        )
-        return {"out": out, "magnitude": magnitude}
+        # Pixels are a whole number apart, the width need not be: the gain makes up for the difference.
+        settings: dict[str, Any] = {
+            "image": image,
+            "edge": self.edge,
+            "overlap": spacing.step,
+            "operator": self.operator,
+            "channels": self.channels,
+            "strength": self.strength * spacing.gain,
+            "threshold": self.threshold / spacing.gain,
+            "spacing": spacing.step,
+        }
+        return {
+            "out": draw("edge_detect", **settings),
+            "magnitude": draw("edge_detect_magnitude", result=Field(), **settings),
+        }

@@ -34,6 +34,9 @@ class Outline(Filter):
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         """Find for each pixel the nearest edge of the mask in its column, with steps that halve, then the nearest of
         those in its row: the exact distance, at a cost that grows with the logarithm of the width.
+
+        A line outside the picture's own alpha lies behind the picture and is filled all the way inside: else the
+        background would shine through between a soft edge and the line.
         """
         mask: Pixels = (
             self.mask if draw.is_linked(self.mask) else draw.point("outline_alpha", self.image, result=Field())

@@ -120,6 +120,7 @@ class Ghosts(Filter):
     glow = OutputSocket()
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        """Draw the flare at half the size: it is soft, and each of its pixels takes light from the whole picture."""
         half = (-(-draw.size[0] // 2), -(-draw.size[1] // 2))
         light = draw.point("ghosts_light", self.image, threshold=self.threshold, knee=self.knee, limit=self.limit)
         light = draw("ghosts_shrink", image=light, size=half, overlap=Reach.block(2, 2))

@@ -43,7 +43,12 @@ def denoise(
     count: int,
     strides: tuple[int, ...],
 ) -> Drawn:
-    """Light without the noise of few samples, by functions of node `id`."""
+    """Light without the noise of few samples, by functions of node `id`.
+
+    The pattern of noise repeats after 4 x 4 pixels: the mean over one period removes most of it. The levels after it
+    are steps of an a-trous filter, each with its samples farther apart, so that few samples cover a wide area. They do
+    not mix light that differs by more than its variance (`spread`) explains.
+    """
     light, spread = draw.several(
         f"{id}_period", (LIGHT, SPREAD), guide=guide, light=light, spread=spread, rays=rays, count=count
     )

@@ -1,4 +1,3 @@
-import math
 from collections.abc import Iterable, Mapping
 from typing import Annotated, Any, Literal
 
@@ -27,22 +26,13 @@ from .._declare import (
     name_lights,
     ramp_at,
 )
-from ._area_lights import AREA_KINDS, COSINE_CELLS, pack_area_light, read_cosines
-from ._blackbody import blackbody_rec709
+from ._area_lights import AREA_KINDS, COSINE_CELLS, read_cosines
 from ._coverage import COVERAGE_REACH
 from ._light_masks import BATCH, draw_masks, is_limited
-
-TILE = 16
-"""Pixels across a tile."""
-
-FEW = 8
-"""Up to so many lights, each pixel loops over all of them: sorting them into tiles costs more than it saves."""
+from ._light_tables import sort_lamps, tabulate_lights
 
 _HERE = dict.fromkeys(("albedo", "material", "occlusion", "normal", "place", "near"), COVERAGE_REACH) | {"coverage": 0}
 """What a pixel is lit by: its own, or its neighbors'; lights and what they reach may be read anywhere."""
-
-_BITS = 24
-"""Lights to a channel of a texel: as many as a float holds exactly."""
 
 _RIG = name_lights(
     key=Light(LightKind.SPHERE, (-3.5, -5.0, 4.5), color=(1.0, 0.78, 0.55), intensity=80.0, size=0.6),
@@ -154,8 +144,52 @@ class DeferredLighting(Filter):
     specular_light = OutputSocket(Image(doc="The specular light."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
-        camera, placed = draw.camera(self.camera), draw.is_linked(self.position)
+        """Describe the surfaces, sort the lights, then add up their light three times: all of it, and its two parts.
+
+        The sum is not put together from its parts, because an output that nothing reads is not drawn: so graphs that
+        read only the first output draw one picture.
+        """
+        camera = draw.camera(self.camera)
+        surface = self._describe_surfaces(draw, camera)
+        shining = self._list_lights()
+        unlimited = [light for light in shining if not is_limited(light)]
+        areas = [light for light in unlimited if light.kind in AREA_KINDS]
+        point_lights = [light for light in unlimited if light.kind not in AREA_KINDS]
+        lamps = sort_lamps(draw, surface["place"], point_lights, self.intensity)
+        ambient_gain = 0.0 if any(light.solo for light in shining) else self.ambient_intensity
+        ambient = tuple(ambient_gain * self.ambient[3] * part for part in self.ambient[:3])
+        limited = self._limit_lights(draw, shining, surface["normal"], surface["place"], camera)
+
+        def add_up(scattered: float, mirrored: float) -> Drawn:
+            numbers = {"share": (scattered, mirrored), **self._list_numbers(draw, camera)}
+            light = draw(
+                "deferred_lighting_lit",
+                self.albedo,
+                self.material,
+                self.occlusion,
+                **surface,
+                **lamps,
+                overlap=_HERE,
+                model=self.model,
+                ambient=ambient,
+                **numbers,
+            )
+            if areas:
+                light = self._add_areas(draw, light, areas, surface, numbers)
+            for batch, mask in limited:
+                light = self._add_limited(draw, light, batch, mask, surface, numbers)
+            return light
+
+        return {
+            "out": draw.point("deferred_lighting", lit=add_up(1.0, 1.0), emission=self.emission),
+            "diffuse": add_up(1.0, 0.0),
+            "specular_light": add_up(0.0, 1.0),
+        }
+
+    def _describe_surfaces(self, draw: Draw, camera: CameraModel | None) -> dict[str, Any]:
+        """What light falls on: the place, the normal and the nearness of each pixel, and its shares at an edge."""
         rows, rays = (camera.rows, camera.inverse) if camera else ((0.0,) * 12, (0.0,) * 12)
+        placed = draw.is_linked(self.position)
         place = draw.point(
             "deferred_lighting_place", self.depth, self.position, result=Vector(width=4), rays=rays, placed=placed
         )
@@ -168,76 +202,20 @@ class DeferredLighting(Filter):
         )
         near = draw.point("deferred_lighting_nearness", place=place, result=Field())
         coverage = draw(
-            "deferred_lighting_coverage",
-            normal=normal,
-            near=near,
-            overlap=COVERAGE_REACH,
-            result=Vector(width=3),
+            "deferred_lighting_coverage", normal=normal, near=near, overlap=COVERAGE_REACH, result=Vector(width=3)
         )
-        shining = self._list_lights()
-        unlimited = [light for light in shining if not is_limited(light)]
-        lights = [light for light in unlimited if light.kind not in AREA_KINDS]
-        areas = [light for light in unlimited if light.kind in AREA_KINDS]
-        texels = max(1, -(-len(lights) // (4 * _BITS)))
-        tiled = len(lights) > FEW and any(_ball(light)[3] < math.inf for light in lights)
-        words = self._tiles(draw, place, lights, texels) if tiled else draw.table(_all(len(lights), texels), texels)
-        table = self._tabulate(draw, lights)
-        ambient_gain = 0.0 if any(light.solo for light in shining) else self.ambient_intensity
-        ambient = tuple(ambient_gain * self.ambient[3] * part for part in self.ambient[:3])
-        limited = self._limit_lights(draw, shining, normal, place, camera)
+        return {"normal": normal, "place": place, "near": near, "coverage": coverage}
 
-        surface: dict[str, Any] = {"normal": normal, "place": place, "near": near, "coverage": coverage}
-        material: dict[str, Any] = {
+    def _list_numbers(self, draw: Draw, camera: CameraModel | None) -> dict[str, Any]:
+        """The material and the camera, as numbers for GLSL."""
+        return {
             "mapped": draw.is_linked(self.material),
             "metal": self.metal,
             "roughness": self.roughness,
             "specular": self.specular,
-        }
-        view: dict[str, Any] = {"rays": rays, "seen": camera is not None, "eye": camera.eye if camera else (0.0,) * 3}
-
-        def lit(scattered: float, mirrored: float) -> Drawn:
-            light = draw(
-                "deferred_lighting_lit",
-                self.albedo,
-                self.material,
-                self.occlusion,
-                **surface,
-                lights=table,
-                words=words,
-                overlap=_HERE,
-                model=self.model,
-                texels=texels,
-                tiled=tiled,
-                share=(scattered, mirrored),
-                **material,
-                ambient=ambient,
-                **view,
-            )
-            if areas:
-                light = draw(
-                    "deferred_lighting_areas",
-                    self.albedo,
-                    self.material,
-                    **surface,
-                    lit=light,
-                    areas=self._tabulate(draw, areas),
-                    cosines=draw.table(read_cosines(), COSINE_CELLS),
-                    overlap=_HERE | {"lit": 0},
-                    count=len(areas),
-                    share=(scattered, mirrored),
-                    **material,
-                    **view,
-                )
-            for batch, mask in limited:
-                light = self._add_limited(
-                    draw, light, batch, mask, surface, {"share": (scattered, mirrored), **material, **view}
-                )
-            return light
-
-        return {
-            "out": draw.point("deferred_lighting", lit=lit(1.0, 1.0), emission=self.emission),
-            "diffuse": lit(1.0, 0.0),
-            "specular_light": lit(0.0, 1.0),
+            "rays": camera.inverse if camera else (0.0,) * 12,
+            "seen": camera is not None,
+            "eye": camera.eye if camera else (0.0,) * 3,
         }
 
     def _limit_lights(
@@ -258,6 +236,28 @@ class DeferredLighting(Filter):
             for batch in batches
         ]
 
+    def _add_areas(
+        self,
+        draw: Draw,
+        light: Drawn,
+        areas: list[Light],
+        surface: Mapping[str, Any],
+        numbers: Mapping[str, Any],
+    ) -> Drawn:
+        """A picture of light with that of rectangles, discs and tubes."""
+        return draw(
+            "deferred_lighting_areas",
+            self.albedo,
+            self.material,
+            **surface,
+            lit=light,
+            areas=tabulate_lights(draw, areas, self.intensity),
+            cosines=draw.table(read_cosines(), COSINE_CELLS),
+            overlap=_HERE | {"lit": 0},
+            count=len(areas),
+            **numbers,
+        )
+
     def _add_limited(
         self,
         draw: Draw,
@@ -277,8 +277,8 @@ class DeferredLighting(Filter):
             **surface,
             lit=light,
             mask=mask,
-            lights=self._tabulate(draw, lamps),
-            areas=self._tabulate(draw, areas),
+            lights=tabulate_lights(draw, lamps, self.intensity),
+            areas=tabulate_lights(draw, areas, self.intensity),
             cosines=draw.table(read_cosines(), COSINE_CELLS),
             overlap=_HERE | {"lit": 0, "mask": COVERAGE_REACH},
             model=self.model,
@@ -287,59 +287,12 @@ class DeferredLighting(Filter):
             **numbers,
         )
 
-    def _tabulate(self, draw: Draw, lights: list[Light]) -> Drawn:
-        """Rows of numbers for GLSL, one for each light; the second texel of a row is a color. All are areas, or none.
-
-        Temperatures become colors in GLSL, as only that knows the working space.
-        """
-        pack = pack_area_light if lights and lights[0].kind in AREA_KINDS else _pack_light
-        rows = [pack(light, self.intensity) for light in lights]
-        width = len(rows[0]) // 4 if rows else 3
-        table = draw.table(tuple(part for row in rows for part in row), width)
-        if not any(light.temperature for light in lights):
-            return table
-        colors = [blackbody_rec709(light.temperature) if light.temperature else (1.0,) * 3 for light in lights]
-        return draw(
-            "deferred_lighting_tint",
-            table=table,
-            tints=draw.table(tuple(part for color in colors for part in (*color, 1.0)), 1),
-            heated=draw.table(tuple(part for light in lights for part in (float(light.temperature > 0.0),) * 4), 1),
-            size=(width, len(lights)),
-            result=Vector(width=4),
-        )
-
     def _list_lights(self) -> list[Light]:
         """The lights that shine. Where some are solo, those alone: without the swarm and without ambient light."""
         lights = [light for light in lights_of(self.lights) if light.on]
         if solos := [light for light in lights if light.solo]:
             return solos
         return [*lights, *self._swarm(MAX_LIGHTS - len(lights))]
-
-    def _tiles(self, draw: Draw, place: Drawn, lights: list[Light], texels: int) -> Drawn:
-        """Which lights can reach which tile: see the GLSL."""
-        width, height = (-(-length // TILE) for length in draw.size)
-        low, high = (
-            draw(
-                "deferred_lighting_corner",
-                place=place,
-                size=(width, height),
-                overlap=2 * TILE,
-                result=Vector(width=4),
-                side=side,
-            )
-            for side in (1.0, -1.0)
-        )
-        balls = draw.table(tuple(part for light in lights for part in _ball(light, 1e18)), 1)
-        return draw(
-            "deferred_lighting_tile",
-            low=low,
-            high=high,
-            balls=balls,
-            size=(width * texels, height),
-            result=Vector(width=4),
-            count=len(lights),
-            texels=texels,
-        )
 
     def _swarm(self, most: int) -> Iterable[Light]:
         """Evenly in the box: Roberts's R3 sequence (2018), whose steps are powers of the root of x^4 = x + 1."""
@@ -357,42 +310,3 @@ class DeferredLighting(Filter):
                 intensity=alpha * self.swarm_intensity,
                 reach=self.swarm_reach,
             )
-
-
-def _pack_light(light: Light, gain: float) -> tuple[float, ...]:
-    """What the GLSL reads of a light, as three texels.
-
-    The place, or the way to a sun; 1 / reach^2. The color times the intensity; the radius, -1 for a sun. What takes the
-    way to the light to a cosine between the cones of a spot.
-    """
-    kind = light.kind
-    red, green, blue = (gain * light.gain * part for part in light.color)
-    x, y, z = light.aim
-    window = 1.0 / light.reach**2 if light.reach > 0.0 and kind is not LightKind.SUN else 0.0
-    size = max(light.size, 1e-4) if kind is LightKind.SPHERE else -1.0 if kind is LightKind.SUN else 0.0
-    cone = (0.0, 0.0, 0.0, 1.0)
-    if kind is LightKind.SPOT:
-        outer = math.cos(light.outer)
-        scale = 1.0 / max(math.cos(min(light.inner, light.outer)) - outer, 1e-4)
-        cone = (-x * scale, -y * scale, -z * scale, -outer * scale)
-    place = (-x, -y, -z) if kind is LightKind.SUN else light.place
-    return (*place, window, red, green, blue, size, *cone)
-
-
-def _ball(light: Light, endless: float = math.inf) -> tuple[float, float, float, float]:
-    """A ball, middle and radius, in which all lies that a light can reach. A little larger, as floats are rounded."""
-    if light.reach <= 0.0 or light.kind is LightKind.SUN:
-        return (0.0, 0.0, 0.0, endless)
-    along, radius = 0.0, light.reach
-    if light.kind is LightKind.SPOT and light.outer < math.pi / 2:
-        angle = light.outer
-        along = radius / (2.0 * math.cos(angle)) if angle < math.pi / 4 else radius * math.cos(angle)
-        radius = along if angle < math.pi / 4 else radius * math.sin(angle)
-    x, y, z = (place + along * part for place, part in zip(light.place, light.aim, strict=True))
-    return (x, y, z, 1.0001 * radius + 1e-6 * max(map(abs, (*light.place, x, y, z))))
-
-
-def _all(count: int, texels: int) -> tuple[float, ...]:
-    """The words of a tile that every light can reach."""
-    lengths = (min(max(count - first, 0), _BITS) for first in range(0, 4 * _BITS * texels, _BITS))
-    return tuple(float(2**length - 1) for length in lengths)

@@ -86,12 +86,38 @@ class DirectionalOcclusion(Filter):
     light = OutputSocket(Image(doc="The light that is added, opaque."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        """Look along slices for what hides the sky and what shines, remove the noise, enlarge, then add the sky."""
         camera = draw.camera(self.camera)
         rows, rays = (camera.rows, camera.inverse) if camera else ((0.0,) * 12, (0.0,) * 12)
         normal = draw(
             "directional_occlusion_normal", self.depth, self.normal, edge="black", result=Vector(width=3), rows=rows
         )
         sky = shrunk(draw, "directional_occlusion", self.environment, SKY)
+        gathered, lamps = self._gather(draw, normal, sky, rows, rays)
+        light = draw(
+            "directional_occlusion_light",
+            self.depth,
+            self.albedo,
+            normal=normal,
+            gathered=gathered,
+            lamps=lamps,
+            sky=irradiance(draw, "directional_occlusion", sky),
+            rays=rays,
+            intensity=self.intensity,
+            bounce=self.bounce,
+            rotation=self.rotation,
+            up=self.up,
+        )
+        return {"out": draw.point("directional_occlusion", self.image, light=light), "light": light}
+
+    def _gather(
+        self, draw: Draw, normal: Drawn, sky: Drawn, rows: tuple[float, ...], rays: tuple[float, ...]
+    ) -> tuple[Drawn, Drawn]:
+        """How much of the sky each pixel sees and from where, and the light of what shines around it.
+
+        The light has the noise of few samples, and bright spots in it: so it has a filter of its own that follows its
+        variance, where what is seen of the sky needs only a mean.
+        """
         factor = FACTORS[self.resolution]
         slices, steps = SAMPLES[self.quality]
         visible, lamps, spread = draw.several(
@@ -131,18 +157,4 @@ class DirectionalOcclusion(Filter):
             )
             for part in (visible, lamps)
         )
-        light = draw(
-            "directional_occlusion_light",
-            self.depth,
-            self.albedo,
-            normal=normal,
-            gathered=gathered,
-            lamps=lamps,
-            sky=irradiance(draw, "directional_occlusion", sky),
-            rays=rays,
-            intensity=self.intensity,
-            bounce=self.bounce,
-            rotation=self.rotation,
-            up=self.up,
-        )
-        return {"out": draw.point("directional_occlusion", self.image, light=light), "light": light}
+        return gathered, lamps

@@ -118,6 +118,11 @@ class ScreenReflections(Filter):
     confidence = OutputSocket(Field(doc="The confidence of the reflection, 0..1."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        """Trace rays per surface, then share the light between the surfaces of a pixel at an edge.
+
+        A pixel at an edge has the mean of two normals, which reflects what neither surface does: so its light is that
+        of its neighbors on both sides, by their shares.
+        """
         camera = draw.camera(self.camera)
         rows, rays = (camera.rows, camera.inverse) if camera else ((0.0,) * 12, (0.0,) * 12)
         all_surfaces = surfaces(draw, self.depth, "screen_reflections")

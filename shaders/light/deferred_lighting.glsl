@@ -180,8 +180,8 @@ LitMaterial deferred_lighting_material(
 
 // `share` scales diffuse (x) and specular light (y).
 vec4 deferred_lighting_lit(
-    int model, int texels, bool tiled, vec2 share, bool mapped, float metal, float roughness, float specular,
-    vec3 ambient, const vec4 rays[3], bool seen, vec3 eye
+    int texels, bool tiled, int model, vec3 ambient, vec2 share, bool mapped, float metal, float roughness,
+    float specular, const vec4 rays[3], bool seen, vec3 eye
 ) {
     vec4 color = finite(albedo_at(pixel)), sum = vec4(0.0);
     Coverage shares = coverage_of(coverage_at(pixel));

@@ -137,6 +137,10 @@ def _kind(graph: Graph, source: Port, target: Port) -> tuple[Kind, int]:
 
 
 def _body(graph: Graph, ids: list[str], chosen: Collection[ElementId], crossing: _Crossing, spots: Places) -> Graph:
+    """The graph inside a new group. Dots of links that lie inside move with them, and so do chosen frames and
+    comments. It takes over only the reference height, as lengths depend on it; a group has no size or frames of its
+    own.
+    """
     links = {end: start for end, start in graph.links.items() if end.node in ids and start.node in ids}
     links |= {end: Port(INPUTS, name) for end, name in crossing.entering.items()}
     links |= {Port(OUTPUTS, name): start for start, name in crossing.leaving.items()}

@@ -100,6 +100,11 @@ class DisplayedImages:
     def _lease_image(
         self, before: _LeasedImage | None, port: Port, wish: PreviewRequest, face: FrameImage, size: Size
     ) -> _LeasedImage:
+        """The picture of a panel, with a lease so that its texture is not used again.
+
+        The revision grows only with other pixels: what is computed of a picture, such as a scope, stays valid when the
+        same picture is shown again.
+        """
         surface = face.surface
         same = before is not None and before.image.key == surface.key
         lease = self._runner.create_lease()

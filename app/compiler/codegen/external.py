@@ -15,7 +15,8 @@ def write_external(
 ) -> tuple[Shader, tuple[tuple[str, Uniform], ...]]:
     """The program and the values of its uniforms: samplers get the texture units of their pictures.
 
-    `rounding` is the text of `as_half`, if the result is stored in half floats.
+    `rounding` is the text of `as_half`, if the result is stored in half floats. What is added has names that begin with
+    `halation_`, because the user's program may define any other name.
     """
     fragment, vertex = root.text.fragment, root.text.vertex
     color = "halation_half(halation_pixel())" if rounding else "halation_pixel()"

@@ -55,6 +55,11 @@ class IsfWriter:
         return "\n".join(lines) + "\n", targets
 
     def _write_pass(self, fused: PassGroup, output: int, first: int) -> None:
+        """Write one output of a pass as a function, a buffer and a call.
+
+        Each output is a pass of its own, since a pass of this format has one target. The call first sets the size of
+        the whole picture, from which other sizes are computed: RENDERSIZE is the size of the pass's own buffer.
+        """
         ref = fused.writes[output]
         names = IsfNames(
             self.model.program,

@@ -166,6 +166,9 @@ class Recorder:
         overlap: Overlap | Mapping[str, Overlap] | None,
         light: bool,
     ) -> Gather:
+        """The operation of a draw. A picture with one channel that stands for an Image still gets a vec4 accessor, as
+        the shader of the node is written for Images.
+        """
         overlaps = overlap if isinstance(overlap, Mapping) else dict.fromkeys(arguments, overlap)
         accessors: list[Accessor] = []
         plain_arguments: dict[str, Argument] = {}

@@ -72,7 +72,11 @@ class Lowering:
         self.outputs: dict[str, Ref] = {}
 
     def run(self) -> LoweringRecord:
-        """Lower every node that is needed, each after those that it reads, then the outputs."""
+        """Lower every node that is needed, each after those that it reads, then the outputs.
+
+        A step is kept under its node and its distance from the frame, so that `incremental` finds it again at another
+        frame. The step of the outputs has the key None.
+        """
         sources = self.find_sources()
         order = [(path, frame - self.frame) for path, frame in self.frames.find_order(sources.values(), self.frame)]
         steps: dict[StepKey, LoweringStep] = {key: self.run_step(key) for key in (*order, None)}
@@ -144,7 +148,8 @@ class Lowering:
     def _find_operand(self, port: Port, frame: int, as_field: bool) -> Operand | None:
         """The operand of a source port; None for a graph input that has neither a picture nor a default.
 
-        With `as_field` that of its Field, if the port carries one besides its Image.
+        With `as_field` that of its Field, if the port carries one besides its Image. An input of the graph has no step
+        of its own: the first step that reads it lowers it, and is replayed when its file changes.
         """
         if as_field and (operand := self._find_field(port, frame)) is not None:
             return operand

@@ -113,7 +113,12 @@ class NodeLowering:
         return shape.channels == 1 and shape.size != (1, 1)
 
     def _lower_outputs(self, inputs: NodeInputs, step: LoweringStep) -> dict[str, Operand]:
-        """The operands of a node's outputs by name."""
+        """The operands of a node's outputs by name.
+
+        A neutral node is replaced by its input. `identity` compares lengths in pixels: so it is asked with working
+        units where units are stated. Graphs that state none are asked as ever, with the values in the file. A mask
+        mixes with the input as it is before the node works on it, so that input is remembered first.
+        """
         node, path = inputs.node, inputs.path
         size = self._find_size(inputs)
         step.whole_height = self._find_whole_height(inputs, size)
@@ -328,7 +333,10 @@ class NodeLowering:
     # --- filters ---------------------------------------------------------------------------------------------------
 
     def _lower_filter(self, inputs: NodeInputs, node: Filter, size: Size, step: LoweringStep) -> dict[str, Operand]:
-        """Record the draws of a filter, on pictures that have the channels that it declares."""
+        """Record the draws of a filter, on pictures that have the channels that it declares.
+
+        An Image input that is fed a Field (`narrow`) keeps its one channel: the result is then a Field too.
+        """
         context, path, remembers = self._context, inputs.path, isinstance(node, Temporal)
         if remembers and inputs.frame != context.frame:
             raise GraphError(

@@ -33,7 +33,10 @@ three roundings; a whole pixel is more than enough."""
 def place(
     builder: Builder, image: Ref, owner: str, shape: PictureShape, matrix: Affine, kernel: Kernel, edge: Edge
 ) -> Ref:
-    """Place `image`, or what it was placed from, into a picture of `shape`."""
+    """Place `image`, or what it was placed from, into a picture of `shape`.
+
+    The first of two transforms is left in the program: other nodes may read it. If none does, it is never drawn.
+    """
     chain, before = (owner,), builder.inspect(image)
     if isinstance(before, Placement) and before.edge == edge:
         source = before.accessors[0].operand

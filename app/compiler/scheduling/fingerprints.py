@@ -91,7 +91,8 @@ def update_keys(
 ) -> Set[Ref]:
     """Bring `keys` up to date where `sources`, or the fingerprints of the passes that `changed`, are others.
 
-    Returns the pictures that have other keys than before.
+    Passes stand in the order in which they run, so one walk is enough: what a pass reads has its key by then. Returns
+    the pictures that have other keys than before.
     """
     changed_refs: set[Ref] = set()
 

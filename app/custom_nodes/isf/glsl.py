@@ -172,7 +172,11 @@ _TYPES: Mapping[str, str] = MappingProxyType(
 
 
 def write_program(code: Code, header: Header) -> ShaderText:
-    """Write the program of a shader. Raises CodeFault."""
+    """Write the program of a shader. Raises CodeFault.
+
+    The format counts rows from below, Halation from above: so the fragment coordinate and what is derived along y are
+    turned over. Library text is added only where the shader uses it: it costs compile time.
+    """
     types = _list_types(header)
     fragment, vertex = (
         guard_code(guard_loops(_translate(expand_code(text, types=types), way)), types)

@@ -73,7 +73,11 @@ def make_isf_socket(entry: IsfInput) -> Socket:
 
 
 def make_isf_value(entry: IsfInput, name: str) -> Value:
-    """The value of the node for an input that is no picture."""
+    """The value of the node for an input that is no picture.
+
+    Colors are display values in the format and light in a node. A position is counted from below there. Of two choices
+    with the same number the first counts, so the last entries go into `by_number` first.
+    """
     label = entry.label or entry.name.replace("_", " ")
     if entry.choices:
         labels = tuple(label for _, label in entry.choices)

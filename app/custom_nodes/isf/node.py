@@ -64,7 +64,10 @@ class IsfShader:
 
 @lru_cache(MAX_ISF_CLASSES)
 def make_isf_class(code: Code) -> type[CustomNode]:
-    """The class of the nodes that this shader describes. Raises CodeFault."""
+    """The class of the nodes that this shader describes. Raises CodeFault.
+
+    Its shader is named by a digest of the text and the file: two texts must never share a compiled program.
+    """
     for part in (code.text, code.vertex):
         check_length(part)
     header = read_header(code.text)

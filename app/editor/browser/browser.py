@@ -200,6 +200,9 @@ class FileBrowser:
             self._table.reveal = self._grid.reveal = True
 
     def _draw_name_field(self, browsing: Browsing) -> None:
+        """Draw the field below the files. It takes the keyboard whenever nothing else has it, so that typing always
+        finds files. Backspace leaves the folder only if the field was empty before the key was typed into it.
+        """
         free = not imgui.is_any_item_active() and not self._naming and self._context.dialogs.question is None
         if self._focus == "field" or free:
             imgui.set_keyboard_focus_here()

@@ -36,7 +36,10 @@ class Minimap:
         return panel[2] - gap - width, panel[3] - gap - height, panel[2] - gap, panel[3] - gap
 
     def draw(self, brush: DrawContext, panel: Rect, scene: CanvasScene) -> None:
-        """Draw the minimap, and pan the view to a click in it."""
+        """Draw the minimap, and pan the view to a click in it.
+
+        Its bounds include the visible part, so that the rectangle of the view never leaves the map.
+        """
         left, top, right, bottom = brush.visible
         self.is_needed = self.dragging or any(
             box.x < left or box.y < top or box.x + box.w > right or box.y + box.h > bottom

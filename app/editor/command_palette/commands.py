@@ -97,6 +97,7 @@ def explain_disabled(context: PaletteContext, action: ListedAction) -> str:
 
 
 def _all(context: PaletteContext) -> Iterator[Command]:
+    """Every command. A weight below 0 puts what is rarely meant behind commands that match a text as well."""
     for action in context.actions.all:
         label = action.label.removesuffix("...")
         menu = action.menu.split("/")

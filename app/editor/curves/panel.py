@@ -122,6 +122,9 @@ class AnimationPanel:
     # --- drawing -----------------------------------------------------------------------------------------------------
 
     def _draw(self, frame: CurvesFrame) -> None:
+        """Handle the mouse, then draw. The mouse may move the view or the keys: then everything is placed again before
+        it is drawn, or the picture would be one frame behind the hand.
+        """
         context, state, rect = frame.context, frame.state, frame.plane.rect
         left, top, right, bottom = frame.ruler[0], frame.ruler[1], rect[2], rect[3]
         imgui.set_cursor_screen_pos((left, top))

@@ -63,6 +63,11 @@ def _choose_by_wheel(current: str, choices: Sequence[str]) -> int | None:
 def _draw_popup(
     fields: Fields, id: str, current: str, choices: Sequence[str], rect: tuple[float, float, float, float]
 ) -> int | None:
+    """Draw the open list; the index of the chosen entry, if any.
+
+    A long list has a field that filters it. A short one takes typed letters itself, and is searched by them. If nothing
+    matches, all entries stay: an empty list would not say why.
+    """
     line = imgui.get_text_line_height_with_spacing()
     imgui.set_next_window_pos((rect[0], rect[3]), imgui.Cond_.appearing)
     imgui.set_next_window_size_constraints((rect[2] - rect[0], 0.0), (line * 40, line * 18))

@@ -108,6 +108,9 @@ def _draw(
     active: bool,
     plain: bool,
 ) -> None:
+    """Draw the field while nobody types in it. Where room is short, the unit goes first, then digits after the point:
+    the number itself must stay readable.
+    """
     palette, pad = fields.palette, imgui.get_style().frame_padding.x * 0.75
     background(palette, rect, hovered=hovered, active=active)
     lines, rounding = imgui.get_window_draw_list(), imgui.get_style().frame_rounding

@@ -62,7 +62,11 @@ def _take_step(fields: Fields, typing: Typing) -> Edit | None:
 
 
 def _draw_input(typing: Typing, width: float, lines: int, hint: str) -> bool:
-    """Draw the input widget; True if Enter ended it."""
+    """Draw the input widget; True if Enter ended it.
+
+    Tab and the arrow keys come through callbacks, as the widget would take them itself: Tab accepts the text, and the
+    arrows step the digit at the caret.
+    """
     flag = imgui.InputTextFlags_
     flags = int(flag.auto_select_all) | int(flag.callback_completion)
     if typing.number:

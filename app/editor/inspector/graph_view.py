@@ -216,6 +216,7 @@ class GraphView:
                 rows.act(lambda: session.apply(SetFrameRange(None)))
         if edit and isinstance(edit.value, tuple):
             low, high = (int(part) for part in edit.value)
+            # The end that moves pushes the other one, so that the range never runs backwards.
             low, high = (low, max(low, high)) if low != first else (min(low, high), high)
             rows.act(lambda: session.apply(SetFrameRange(low, high, merge=edit.merge)))
         rows.name("rate", "rate", doc="Frames per second", changed=settings.rate != 24.0)

@@ -235,7 +235,10 @@ class Keying:
         entry(icons.ICON_FA_PASTE, "Paste Animation", True, lambda: paste(session, ports, context.clipboard.get()))
 
     def _draw_typing(self, rows: Rows, port: Port, id: str, text: str, width: float) -> None:
-        """Draw the expression field while the user types in it."""
+        """Draw the expression field while the user types in it.
+
+        An invalid text is kept as a draft when typing ends: the value stays as it was, and nothing typed is lost.
+        """
         fields, context = self._fields, rows.context
         session = context.session
         edit = text_entry(fields, width)

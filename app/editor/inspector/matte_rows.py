@@ -90,6 +90,10 @@ class MatteRows:
     def _list(
         self, rows: Rows, key: str, names: list[str], picked: frozenset[str], toggle: Callable[[str], object]
     ) -> None:
+        """Draw the names of a matte, only those in sight: a production render has thousands.
+
+        A name picked in the viewer is scrolled to, but not while the mouse is over the list, where the user reads.
+        """
         height = imgui.get_text_line_height() + 6.0 * ui_scale()
         rows.indent()
         imgui.push_style_color(imgui.Col_.child_bg, vec4(rows.palette.field))

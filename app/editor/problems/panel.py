@@ -49,6 +49,10 @@ class ProblemsPanel:
         imgui.end_child()
 
     def _draw_row(self, index: int, finding: ListedProblem) -> None:
+        """Draw one problem: first a row that takes clicks, then the text over it, from the same corner.
+
+        The empty item at the end tells the interface library that the cursor was moved on purpose.
+        """
         scale, style = ui_scale(), imgui.get_style()
         indent = 26 * scale
         room = imgui.get_content_region_avail().x - indent - 6 * scale

@@ -214,7 +214,10 @@ class RenderQueueView:
     # --- small pictures ----------------------------------------------------------------------------------------------
 
     def _draw_picture(self, export: QueuedRender, start: ImVec2) -> None:
-        """Draw a thumbnail of the last written file, or an icon."""
+        """Draw a thumbnail of the last written file, or an icon.
+
+        The picture before it stays until the new one is read, or the row would flicker with every frame that is done.
+        """
         scale, palette, lines = ui_scale(), self._context.palette, imgui.get_window_draw_list()
         width, height = _WIDTH * scale, _HEIGHT * scale
         corner = ImVec2(start.x + width, start.y + height)

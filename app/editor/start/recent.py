@@ -59,6 +59,10 @@ class RecentList:
             imgui.pop_id()
 
     def _draw_row(self, index: int, recent: Recent) -> None:
+        """Draw one file: first a row that takes clicks, then the text and the button over it, from the same corner.
+
+        The empty item at the end tells the interface library that the cursor was moved on purpose.
+        """
         scale, path, there = ui_scale(), Path(recent.path), self._exists.get(recent.path, True)
         line = imgui.get_text_line_height()
         indent = (_PICTURE[0] + 12) * scale

@@ -64,6 +64,9 @@ class Coach:
         lines.add_rect(low, high, u32(accent), 8.0 * scale, 2.0 * scale)
 
     def _draw_card(self, lesson: Lesson, step: Step, rect: Rect | None) -> None:
+        """Draw the card of a step. It lies above all panels, but not above dialogs and menus: a step may ask the user
+        to choose something in them.
+        """
         scale, progress = ui_scale(), self._context.progress
         sentence = self._fill_in_keys(step.sentence)
         inner = (_WIDTH - 2 * _PADDING[0]) * scale

@@ -150,7 +150,10 @@ class MouseHold:
 
     @classmethod
     def begin(cls, context: ViewerContext, sight: Sight, at: Point, aim: HandleTarget, scale: float = 1.0) -> MouseHold:
-        """Start the drag of a target."""
+        """Start the drag of a target.
+
+        The distance between the pointer and the held point is kept, so that nothing jumps when the drag begins.
+        """
         hold, (x, y) = cls(context, aim, at, scale=scale), sight.fraction(at)
         held_point = None
         if aim.gizmo is not None:

@@ -30,7 +30,10 @@ _HEADINGS = ("", "x, y", *(f"{pair:>9}" for pair in ("R / X", "G / Y", "B / Z", 
 
 
 def rows_of(context: ViewerContext, reader: ValueReader) -> list[tuple[str, str, tuple[float, ...]]]:
-    """The rows of the table: name, pixel, numbers."""
+    """The rows of the table: name, pixel, numbers.
+
+    Where a newer part of a picture is shown, its pixels are read; outside of that part those of the whole picture.
+    """
     viewer = context.viewer
     rows: list[tuple[str, str, tuple[float, ...]]] = []
     layers = _layers(context)

@@ -155,6 +155,10 @@ class Viewer:
         return replace(sight, origin=(sight.origin[0] + sight.panel[0] / sight.density, sight.origin[1]))
 
     def _draw_picture(self, images: _FrameImages, sight: Sight) -> Look:
+        """Draw A, with B beside it or over it, and the overlays; returns how they are shown.
+
+        Snapshots and files wait until the whole picture is there: a part of it would be saved as if it were all.
+        """
         viewer, palette = self._context.viewer, self._context.palette
         if images.a is None:
             look = Look(surround=palette.surround)
@@ -204,6 +208,10 @@ class Viewer:
         return look
 
     def _draw_messages(self, images: _FrameImages, sight: Sight) -> None:
+        """Draw at most one message over the picture, the most urgent one, then the value or the progress.
+
+        A short wait shows no progress: it would flash with every change.
+        """
         preview, palette, viewer = self._context.preview, self._context.palette, self._context.viewer
         fault = preview.fault(A) or (preview.fault(B) if viewer.compares else None)
         if fault and images.a is None and fault not in preview.faults.values():  # the user has to choose something
@@ -251,7 +259,11 @@ class Viewer:
         imgui.dummy((0, 0))
 
     def _read(self, images: _FrameImages, sight: Sight, look: Look) -> None:
-        """Draw the values under the pointer below the picture."""
+        """Draw the values under the pointer below the picture.
+
+        The search for invalid pixels runs only while nothing is computed or dragged, because it reads back the whole
+        picture, part by part.
+        """
         viewer = self._context.viewer
         mouse = imgui.get_mouse_pos()
         under = self._find_hovered_sight(sight).under((mouse.x, mouse.y))

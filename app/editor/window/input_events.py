@@ -245,7 +245,10 @@ class InputQueue:
         self._events.append(InputEvent(self._latest, False, lambda _: enter(), pointer="move"))
 
     def forward(self) -> None:
-        """Hand over a frame's share; to be called before the interface begins the frame."""
+        """Hand over a frame's share; to be called before the interface begins the frame.
+
+        Events leave in their order: the first that has to wait ends the share. The essay of this module says which do.
+        """
         io, share = imgui.get_io(), _Share()
         io.mouse_double_click_time, io.mouse_single_click_delay = DOUBLE_CLICK, SINGLE_CLICK
         is_settled = self._is_focus_settled()

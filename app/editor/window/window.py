@@ -185,6 +185,10 @@ class Window:
     # --- every frame -------------------------------------------------------------------------------------------------
 
     def _before_panels(self) -> None:
+        """Prepare a frame, and work on pictures before any panel is drawn: all panels of a frame show one state.
+
+        The window becomes the target again whatever happens, or the interface would be drawn into a texture.
+        """
         if self.fault is not None:
             return
         editor = self.editor

@@ -46,7 +46,12 @@ class _Assembly:
         """Samples of each knob while all others rest, of the last phase."""
 
     def assemble(self) -> Package:
-        """All plans: for the first frame, and for the frames after it if nodes remember something."""
+        """All plans: for the first frame, and for the frames after it if nodes remember something.
+
+        Each knob is sampled alone first. Where its passes change it becomes an axis, and every combination of axes gets
+        a plan; those that would make too many plans are held at the value of the graph, with all knobs of the same
+        control: a color of which one channel is held would be another color.
+        """
         planner = self.planner
         first, last = planner.first, planner.last
         phases = [Phase({})]

@@ -226,7 +226,11 @@ def _encode_picture(
     compression: str,
     encoding: Encoding,
 ) -> EncodedPart:
-    """The picture of a format that holds no layers. Data keeps its numbers in all of them."""
+    """The picture of a format that holds no layers. Data keeps its numbers in all of them.
+
+    Alpha is left out where the format has none, and where it is 1 everywhere and says nothing. One channel is written
+    as gray in three: not all of these formats have pictures of one channel.
+    """
     if array.shape[2] < 3:
         array = array[..., :1].repeat(3, axis=2)
     if format in ("hdr", "jpeg", "dpx") or (array.shape[2] == 4 and bool((array[..., 3] == 1.0).all())):

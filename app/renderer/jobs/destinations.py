@@ -183,6 +183,11 @@ def select_half_outputs(files: Sequence[Destination], settings: OutputSettings) 
 def _describe_destination(
     graph: Graph, request: RenderRequest, settings: OutputSettings, path: Path, names: Sequence[str], sandbox: Sandbox
 ) -> Destination:
+    """What a file holds, and how its colors are written.
+
+    A file has one view: that of the command, else that of its first output. Scene-linear light and data are never
+    dithered: their codes are not steps that are seen.
+    """
     layers: dict[str, str] = {}
     kinds: dict[str, Kind] = {}
     for name in names:

@@ -43,7 +43,8 @@ def make_header(
 ) -> dict[str, Any]:
     """The metadata of a file: that of the pictures that were read, and what is needed to render it again.
 
-    `graph` is the text of `dump_whole_graph`.
+    `graph` is the text of `dump_whole_graph`. Where two pictures state the same thing, the first one counts. What an
+    earlier render wrote into them is dropped, since it describes that render.
     """
     metadata: dict[str, Any] = {}
     for path in dict.fromkeys(item.path for item in sources if item.is_picture):

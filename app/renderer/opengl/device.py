@@ -208,7 +208,7 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
 
     @cached_property
     def _idle(self) -> moderngl.Framebuffer:
-        """What stays bound between draws."""
+        """What stays bound between draws: a target must not, as it may be released before the next draw."""
         return self.context.framebuffer([self.context.texture((1, 1), 1)])
 
     @cached_property
