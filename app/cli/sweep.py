@@ -31,6 +31,7 @@ from .watchdog import Timeout, rerun_watched
 
 if TYPE_CHECKING:
     from ..graph import Graph
+    from ..renderer.jobs.sweep import SweepSheet
 
 
 def sweep(
@@ -82,10 +83,6 @@ def sweep(
 
     One swept value gives rows, two give a grid. A --set with a single value sets it for all pictures.
     """
-    from halation.nodes import Kind
-
-    from .. import media
-    from ..errors import UsageError
     from ..inputs.lazy_provider import LazyResourceProvider
     from ..renderer import DEFAULT_BUDGET, RenderRequest
     from ..renderer.jobs import sweep as sweeping
@@ -109,9 +106,7 @@ def sweep(
     shown_output = _choose_output(opened_graph, show, node)
     shown_view = view or ("" if node else opened_graph.outputs[shown_output].view)
     count = len(sweeping.list_cells(opened_graph, sweep_axes, frame_of_all))
-    media.check_destination(output, {"": Kind.IMAGE}, {"": (1, 1)}, view=shown_view, sandbox=sandbox)
-    if output.suffix.casefold() in (".exr", ".hdr"):
-        raise UsageError(f"{output}: a sheet cannot be written in this format: use .png, .jpg, .tif or .webp")
+    _check_sheet(output, shown_view, sandbox)
     cell_files = (
         OutputSettings((("", cells),), view, precision=parsed_precision or "half") if cells is not None else None
     )
@@ -123,10 +118,7 @@ def sweep(
         )
         sheet = sweeping.render_sweep(batch.renderer, opened_graph, sweep_axes, sweep_request, frame_of_all, batch.step)
         device = batch.device
-    metadata = {"ImageDescription": "\n".join(item.label for item in sheet.cells)}
-    media.write_picture(
-        output, {"": sheet.light}, kinds={"": Kind.IMAGE}, view="none", metadata=metadata, sandbox=sandbox
-    )
+    _write_sheet(output, sheet, sandbox)
     seconds = time.perf_counter() - started
     if as_json:
         print_json(_sweep_facts(output, sheet, device, seconds))
@@ -152,11 +144,39 @@ def _choose_output(graph: Graph, show: str, node: str) -> str:
     return show or next(iter(graph.outputs))
 
 
+def _check_sheet(output: Path, view: str, sandbox: Sandbox) -> None:
+    """Raise UsageError for a file that no sheet can be written to. Sheets are made for the eye, so not as light."""
+    from halation.nodes import Kind
+
+    from .. import media
+    from ..errors import UsageError
+
+    media.check_destination(output, {"": Kind.IMAGE}, {"": (1, 1)}, view=view, sandbox=sandbox)
+    if output.suffix.casefold() in (".exr", ".hdr"):
+        raise UsageError(f"{output}: a sheet cannot be written in this format: use .png, .jpg, .tif or .webp")
+
+
+def _write_sheet(output: Path, sheet: SweepSheet, sandbox: Sandbox) -> None:
+    """Write a sheet, with the labels of its cells as its description."""
+    from halation.nodes import Kind
+
+    from .. import media
+
+    media.write_picture(
+        output,
+        {"": sheet.light},
+        kinds={"": Kind.IMAGE},
+        view="none",
+        metadata={"ImageDescription": "\n".join(item.label for item in sheet.cells)},
+        sandbox=sandbox,
+    )
+
+
 def _add_dot(text: str) -> str:
     return text if text.startswith(".") else f".{text}"
 
 
-def _sweep_facts(output: Path, sheet: Any, device: str, seconds: float) -> dict[str, Any]:
+def _sweep_facts(output: Path, sheet: SweepSheet, device: str, seconds: float) -> dict[str, Any]:
     return {
         "written": str(output),
         "size": list(sheet.light.shape[1::-1]),

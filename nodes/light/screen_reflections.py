@@ -143,12 +143,11 @@ class ScreenReflections(Filter):
         )
         light = self._trace(draw, all_surfaces, normal, rough, rows, rays)
         if draw.is_linked(self.normal):
-            near = draw("screen_reflections_near", surfaces=all_surfaces, result=Field())
             light, normal = draw.several(
                 "screen_reflections_shared",
                 (LIGHT, Vector(width=3)),
                 self.normal,
-                near=near,
+                near=draw("screen_reflections_near", surfaces=all_surfaces, result=Field()),
                 facing=normal,
                 light=light,
                 overlap=COVERAGE_REACH,

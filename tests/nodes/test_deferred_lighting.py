@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from geometry import CAMERA, ball
 from halation.nodes import Light, LightKind, lights_of, look_at, number_lights
-from halation.nodes.light import deferred_lighting as module
+from halation.nodes.light import _light_tables as module
 from halation.nodes.light.deferred_lighting import DeferredLighting
 from lighting_formulas import FURNACE, POINT, SPHERE, SPOT, SUN, Array, lit, reflected
 from msgspec import structs

@@ -158,20 +158,9 @@ def make_node_layout(id: str, item: Item, graph: Graph, facts: NodeFacts) -> Nod
     heading = _describe_item(id, item, sort)
     input_pins, output_pins = _list_pins(node_signature, facts)
     if facts.collapsed:
-        linked = [
-            Pin(name, find_value_kind(node_signature.values[name]), 0.0, 0.0, True, True)
-            for name in node_signature.values
-            if name in facts.linked_ins
-        ]
-        return NodeLayout(
-            sort,
-            WIDTH,
-            HEADER,
-            *heading,
-            ins=_spread_pins([*input_pins, *linked]),
-            outs=_spread_pins(output_pins),
-            collapsed=True,
-        )
+        ins = _spread_pins([*input_pins, *_list_linked_values(node_signature, facts)])
+        outs = _spread_pins(output_pins)
+        return NodeLayout(sort, WIDTH, HEADER, *heading, ins=ins, outs=outs, collapsed=True)
 
     folded_pins = [pin for pin in input_pins if _is_folded(pin, node_signature)]
     row_pins = [pin for pin in input_pins if pin not in folded_pins]
@@ -321,6 +310,15 @@ def _is_wireable(graph: Graph, port: Port) -> bool:
 
 def _move_pin(pin: Pin, y: float) -> Pin:
     return Pin(pin.name, pin.kind, pin.x, y + ROW / 2, pin.optional, pin.value)
+
+
+def _list_linked_values(node_signature: Signature, facts: NodeFacts) -> list[Pin]:
+    """Pins for the values that links drive: a collapsed node has no rows where these links could end."""
+    return [
+        Pin(name, find_value_kind(value), 0.0, 0.0, True, True)
+        for name, value in node_signature.values.items()
+        if name in facts.linked_ins
+    ]
 
 
 def _spread_pins(pins: list[Pin]) -> dict[str, Pin]:

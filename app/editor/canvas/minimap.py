@@ -9,7 +9,7 @@ from imgui_bundle import imgui
 
 from ..theme.style import u32, ui_scale
 from .brush import DrawContext
-from .geometry import Rect, find_bounds
+from .geometry import Point, Rect, find_bounds
 from .scene import CanvasScene
 
 if TYPE_CHECKING:
@@ -77,6 +77,10 @@ class Minimap:
         draw.add_rect(rect[:2], rect[2:], u32(palette.border), rounding)
         self.context.places["minimap"] = rect
 
+        self._pan(rect, (left, top), scale)
+
+    def _pan(self, rect: Rect, origin: Point, scale: float) -> None:
+        """Center the view on the place under the mouse while it is held down on the map."""
         imgui.set_cursor_screen_pos(rect[:2])
         imgui.set_next_item_allow_overlap()
         imgui.push_item_flag(int(imgui.ItemFlags_.no_nav), True)
@@ -85,4 +89,4 @@ class Minimap:
         self.dragging = imgui.is_item_active()
         if self.dragging:
             mouse = imgui.get_mouse_pos()
-            self.context.canvas.center = (mouse.x - left) / scale, (mouse.y - top) / scale
+            self.context.canvas.center = (mouse.x - origin[0]) / scale, (mouse.y - origin[1]) / scale

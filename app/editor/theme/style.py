@@ -64,7 +64,7 @@ def apply(palette: Palette, scale: float) -> None:
     style.scale_all_sizes(scale)
     style.font_size_base = EM
     style.font_scale_main = scale
-    for name, color, alpha in _colors(palette):
+    for name, color, alpha in (*_list_window_colors(palette), *_list_widget_colors(palette)):
         style.set_color_(getattr(imgui.Col_, name), vec4(color, alpha))
     _assign(style)
 
@@ -86,18 +86,15 @@ def _assign(style: imgui.Style) -> None:
         live.set_color_(index, style.color_(index))
 
 
-def _colors(p: Palette) -> list[tuple[str, RGB, float]]:
+def _list_window_colors(p: Palette) -> list[tuple[str, RGB, float]]:
+    """The colors and opacities of windows, tabs, tables and what lies between them."""
     return [
         ("text", p.text, 1),
-        ("text_disabled", p.dim, 1),
         ("window_bg", p.panel, 1),
         ("child_bg", p.panel, 0),
         ("popup_bg", mix(p.panel, p.raised, 0.25), 1),
         ("border", p.border, 1),
         ("border_shadow", p.border, 0),
-        ("frame_bg", p.field, 1),
-        ("frame_bg_hovered", mix(p.field, p.hover, 0.6), 1),
-        ("frame_bg_active", p.hover, 1),
         ("title_bg", p.window, 1),
         ("title_bg_active", p.window, 1),
         ("title_bg_collapsed", p.window, 1),
@@ -106,15 +103,6 @@ def _colors(p: Palette) -> list[tuple[str, RGB, float]]:
         ("scrollbar_grab", p.raised, 1),
         ("scrollbar_grab_hovered", p.hover, 1),
         ("scrollbar_grab_active", p.accent, 1),
-        ("check_mark", p.accent, 1),
-        ("slider_grab", p.fill, 1),
-        ("slider_grab_active", mix(p.fill, p.accent, 0.5), 1),
-        ("button", p.raised, 1),
-        ("button_hovered", p.hover, 1),
-        ("button_active", mix(p.hover, p.accent, 0.5), 1),
-        ("header", p.raised, 1),
-        ("header_hovered", p.hover, 1),
-        ("header_active", mix(p.hover, p.accent, 0.4), 1),
         ("separator", p.raised, 1),
         ("separator_hovered", p.accent, 0.7),
         ("separator_active", p.accent, 1),
@@ -130,25 +118,44 @@ def _colors(p: Palette) -> list[tuple[str, RGB, float]]:
         ("tab_dimmed_selected_overline", p.accent, 0),
         ("docking_preview", p.accent, 0.5),
         ("docking_empty_bg", p.window, 1),
-        ("input_text_cursor", p.text, 1),
-        ("plot_lines", p.text, 1),
-        ("plot_lines_hovered", p.accent, 1),
-        ("plot_histogram", p.accent, 1),
-        ("plot_histogram_hovered", p.accent, 1),
         ("table_header_bg", p.raised, 1),
         ("table_border_strong", p.border, 1),
         ("table_border_light", p.border, 0.6),
         ("table_row_bg", p.panel, 0),
         ("table_row_bg_alt", p.text, 0.03),
-        ("text_link", p.accent, 1),
-        ("text_selected_bg", p.accent, 0.35),
         ("tree_lines", p.raised, 1),
-        ("drag_drop_target", p.accent, 1),
-        ("drag_drop_target_bg", p.accent, 0.1),
-        ("checkbox_selected_bg", p.field, 1),
         ("nav_cursor", p.accent, 1 if p.name == CONTRAST.name else 0.8),
         ("nav_windowing_highlight", p.text, 0.7),
         ("nav_windowing_dim_bg", p.shadow, 0.4),
         ("modal_window_dim_bg", p.shadow, 0.5),
         ("unsaved_marker", p.accent, 1),
+    ]
+
+
+def _list_widget_colors(p: Palette) -> list[tuple[str, RGB, float]]:
+    """The colors and opacities of fields, buttons, selections and plots."""
+    return [
+        ("text_disabled", p.dim, 1),
+        ("frame_bg", p.field, 1),
+        ("frame_bg_hovered", mix(p.field, p.hover, 0.6), 1),
+        ("frame_bg_active", p.hover, 1),
+        ("check_mark", p.accent, 1),
+        ("slider_grab", p.fill, 1),
+        ("slider_grab_active", mix(p.fill, p.accent, 0.5), 1),
+        ("button", p.raised, 1),
+        ("button_hovered", p.hover, 1),
+        ("button_active", mix(p.hover, p.accent, 0.5), 1),
+        ("header", p.raised, 1),
+        ("header_hovered", p.hover, 1),
+        ("header_active", mix(p.hover, p.accent, 0.4), 1),
+        ("input_text_cursor", p.text, 1),
+        ("plot_lines", p.text, 1),
+        ("plot_lines_hovered", p.accent, 1),
+        ("plot_histogram", p.accent, 1),
+        ("plot_histogram_hovered", p.accent, 1),
+        ("text_link", p.accent, 1),
+        ("text_selected_bg", p.accent, 0.35),
+        ("drag_drop_target", p.accent, 1),
+        ("drag_drop_target_bg", p.accent, 0.1),
+        ("checkbox_selected_bg", p.field, 1),
     ]

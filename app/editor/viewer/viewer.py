@@ -155,10 +155,7 @@ class Viewer:
         return replace(sight, origin=(sight.origin[0] + sight.panel[0] / sight.density, sight.origin[1]))
 
     def _draw_picture(self, images: _FrameImages, sight: Sight) -> Look:
-        """Draw A, with B beside it or over it, and the overlays; returns how they are shown.
-
-        Snapshots and files wait until the whole picture is there: a part of it would be saved as if it were all.
-        """
+        """Draw A, with B beside it or over it, and the overlays; returns how they are shown."""
         viewer, palette = self._context.viewer, self._context.palette
         if images.a is None:
             look = Look(surround=palette.surround)
@@ -199,13 +196,23 @@ class Viewer:
             lines.push_clip_rect((x, y), corner, True)
             draw_overlays(self._context, sight)
             lines.pop_clip_rect()
-            if viewer.snapshot is not None and images.is_whole:
-                take, viewer.snapshot = viewer.snapshot, None
-                self._context.log.attempt(lambda: take(take_snapshot(self._context, images.a, look)))  # type: ignore[arg-type]
-            if viewer.saving and images.is_whole:
-                self._context.log.attempt(lambda: ask_to_save(self._context, images.a, images.b, look))  # type: ignore[arg-type]
-        viewer.saving = viewer.saving and not images.is_whole
+        self._save(images, look)
         return look
+
+    def _save(self, images: _FrameImages, look: Look) -> None:
+        """Take the snapshot or save the picture that the user asked for.
+
+        Both wait until the whole picture is there: a part of it would be saved as if it were all.
+        """
+        viewer, log, a = self._context.viewer, self._context.log, images.a
+        if not images.is_whole:
+            return
+        if viewer.snapshot is not None and a is not None:
+            take, viewer.snapshot = viewer.snapshot, None
+            log.attempt(lambda: take(take_snapshot(self._context, a, look)))
+        if viewer.saving and a is not None:
+            log.attempt(lambda: ask_to_save(self._context, a, images.b, look))
+        viewer.saving = False
 
     def _draw_messages(self, images: _FrameImages, sight: Sight) -> None:
         """Draw at most one message over the picture, the most urgent one, then the value or the progress.
