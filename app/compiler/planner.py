@@ -27,6 +27,7 @@ from .library import Library, load_library
 from .lowering.expand import find_custom_texts
 from .lowering.incremental import lower_again
 from .lowering.lower import lower
+from .lowering.samples import lower_samples
 from .lowering.steps import LoweringRecord
 from .plan import Plan
 from .request import Request
@@ -191,16 +192,17 @@ def compile_graph(
 
 
 def examine(graph: Graph, request: Request, provider: ResourceProvider, target: Target = NULL) -> None:
-    """Raise the errors of `compile_graph` in a third of its time: no program is written.
+    """Raise the errors of `compile_graph` in a fraction of its time: no program is written.
 
     After lowering only sizes can be at fault. Where no operation is too large for a device by itself, no pass is.
     """
     library = graph_library(graph, provider)
-    program = lower(graph, request, library, provider).program
-    for op in program.ops:
+    samples = lower_samples(graph, request, library, provider)
+    for op in samples.ops:
         library.closure(op.files, op.owner)
-    if operations_fit(program, target):
+    if operations_fit(samples, target):
         return
+    program = lower(graph, request, library, provider).program
     passes, precision = rewrite_passes(program, fuse(program, target), target, library), target.precision
     texels = choose_formats(program, passes, target, precision, request.halves)
     plan_tiling(program, passes, texels, library, target, precision, request.halves)

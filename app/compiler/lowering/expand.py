@@ -33,6 +33,8 @@ class FlatGraph(Struct):
     folders: dict[str, str] = field(default_factory=dict[str, str])
     reference_heights: dict[str, int] = field(default_factory=dict[str, int])
     """The reference height of bodies that have one, by the prefix of their nodes, such as `glow/`."""
+    linked: dict[str, list[str]] = field(default_factory=dict[str, list[str]])
+    """The inputs and values that something is linked to, by node."""
     _sources: dict[Port, Port] = field(default_factory=dict[Port, Port])
     """What has been followed already: thousands of links may share a way through many groups."""
 
@@ -115,6 +117,7 @@ def expand(graph: Graph) -> FlatGraph:
                     flat.muted.add(path)
         for target, source in body.links.items():
             inner_target = _enter_groups(body, prefix, target)
+            flat.linked.setdefault(inner_target.node, []).append(inner_target.socket)
             flat.links[inner_target] = _leave_group(body, prefix, source)
             if fault := body.link_faults.get(target):
                 place = f"in group '{prefix.rstrip('/')}': " if prefix else ""

@@ -112,10 +112,14 @@ class GraphAtFrames:
     def _collect_feeds(self, moment: NodeAtFrame) -> dict[str, Feed]:
         path, frame = moment
         flat = self.flat_at(frame)
-        node = flat.nodes[path]
+        node, linked = flat.nodes[path], flat.linked.get(path, ())
         times = node.times(frame)
         feeds: dict[str, Feed] = {}
-        for name in (*node.inputs, *node.values):
+        if len(linked) == 1:  # the usual case
+            names = linked if linked[0] in node.inputs or linked[0] in node.values else ()
+        else:
+            names = (*node.inputs, *node.values) if linked else ()
+        for name in names:
             source = flat.find_source(Port(path, name))
             if source is not None:
                 feeds[name] = (source, times.get(name, (frame,)))

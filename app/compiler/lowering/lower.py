@@ -8,6 +8,7 @@ package explains the steps.
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from itertools import chain
 from types import MappingProxyType
 
@@ -35,7 +36,7 @@ def lower(graph: Graph, request: Request, library: Library, provider: ResourcePr
 class Lowering:
     """The state of lowering one graph. `results` are the operands of all ports lowered so far, by port and frame.
 
-    `find_sources` and `run_step` are public for `incremental`, which lowers single nodes again.
+    `find_sources` and `run_step` are public for `incremental`, which lowers single nodes again, and `samples`.
     """
 
     def __init__(
@@ -77,20 +78,9 @@ class Lowering:
         A step is kept under its node and its distance from the frame, so that `incremental` finds it again at another
         frame. The step of the outputs has the key None.
         """
-        sources = self.find_sources()
-        order = [(path, frame - self.frame) for path, frame in self.frames.find_order(sources.values(), self.frame)]
-        steps: dict[StepKey, LoweringStep] = {key: self.run_step(key) for key in (*order, None)}
-        program = LoweredProgram(
-            tuple(self.builder.ops),
-            MappingProxyType(self.outputs),
-            MappingProxyType(self.memories),
-            MappingProxyType(self._find_results()),
-            MappingProxyType(self.cameras),
-            self.request.scale,
-            self.request.frame,
-        )
+        steps: dict[StepKey, LoweringStep] = {key: self.run_step(key) for key in (*self.list_steps(), None)}
         return LoweringRecord(
-            program,
+            self.make_program(self._find_results()),
             self.library,
             self.frames,
             self.frame,
@@ -99,6 +89,23 @@ class Lowering:
             self.results,
             Counter(chain.from_iterable(step.added for step in steps.values())),
             self.pictures.canvas if self.pictures.canvas_is_read else None,
+        )
+
+    def list_steps(self) -> list[tuple[str, int]]:
+        """The nodes that are needed, with how many frames after the rendered one, each after those that it reads."""
+        sources = self.find_sources().values()
+        return [(path, frame - self.frame) for path, frame in self.frames.find_order(sources, self.frame)]
+
+    def make_program(self, ports: Mapping[Port, Ref]) -> LoweredProgram:
+        """The program of all that has been lowered; `ports` are the pictures that ports stand for."""
+        return LoweredProgram(
+            tuple(self.builder.ops),
+            MappingProxyType(self.outputs),
+            MappingProxyType(self.memories),
+            MappingProxyType(ports),
+            MappingProxyType(self.cameras),
+            self.request.scale,
+            self.request.frame,
         )
 
     def run_step(self, key: StepKey) -> LoweringStep:

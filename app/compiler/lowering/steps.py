@@ -24,12 +24,20 @@ StepKey = tuple[str, int] | None
 """The path of a node, and how many frames after the rendered one it is lowered; None stands for the outputs."""
 
 
+_AS_FIELD = " as Field"
+
+
 def field_port(port: Port) -> Port:
     """The key of the Field that an output has besides its Image, since it follows an input that is fed a Field.
 
     No socket can have this name.
     """
-    return Port(port.node, f"{port.socket} as Field")
+    return Port(port.node, f"{port.socket}{_AS_FIELD}")
+
+
+def is_field_port(port: Port) -> bool:
+    """True for a key that `field_port` made."""
+    return port.socket.endswith(_AS_FIELD)
 
 
 class LoweringStep(Struct):
