@@ -104,6 +104,14 @@ def looped(count: int) -> Document:
     return graph
 
 
+def distinct(count: int) -> Document:
+    """Nodes in a row, each with another number."""
+    graph = chain(count)
+    for number in range(count):
+        graph["nodes"][f"n{number}"]["values"] = {"stops": number / 1000}
+    return graph
+
+
 def unused(count: int) -> Document:
     """Branches that lead nowhere and share their beginning."""
     graph = chain(count)
@@ -123,6 +131,7 @@ def read_behind(count: int) -> Document:
 GRAPHS: Mapping[str, Callable[[int], Document]] = MappingProxyType(
     {
         "chain": chain,
+        "distinct": distinct,
         "fan": fan,
         "muted": lambda count: chain(count, muted=True),
         "neutral": lambda count: chain(count, values={}),

@@ -41,3 +41,20 @@ def read_text(path: Path, sandbox: Sandbox) -> str:
 
 def _reason(error: Exception) -> str:
     return (error.strerror if isinstance(error, OSError) else None) or str(error)
+
+
+def resolve_file(path: Path) -> Path | None:
+    """The file with links followed, or None if there is none."""
+    try:
+        real = path.resolve()
+        return real if real.is_file() else None
+    except (OSError, ValueError, RuntimeError):
+        return None
+
+
+def list_graph_files(folder: Path) -> tuple[str, ...]:
+    """The names of the graph files in a folder; none if it cannot be read."""
+    try:
+        return tuple(path.name for path in folder.glob("*.json"))
+    except (OSError, ValueError):
+        return ()

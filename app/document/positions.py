@@ -23,6 +23,10 @@ _ENTRY = re.compile(rf'\s*+(?:({_STRING}|[^\s{{}}\[\],:"]++)|([{{}}\[\]])|[,:])'
 _BRACKET = re.compile(rf'(?:[^"{{}}\[\]]++|{_STRING})*+([{{}}\[\]])', re.DOTALL)
 """The next bracket that is not in a string."""
 
+_PLAIN = rf'(?:[^"{{}}\[\]]++|{_STRING})*+'
+_FLAT = re.compile(rf"{_PLAIN}(?:\{{{_PLAIN}\}}{_PLAIN})?[}}\]]", re.DOTALL)
+"""The rest of a container in which there is one object at most, which holds no other: that of most nodes."""
+
 
 class Positions:
     """The lines on which parts of a text begin: an entry of an object at its key, one of a list at itself.
@@ -97,6 +101,8 @@ def _find_places(text: str, prefixes: frozenset[str]) -> dict[str, tuple[int, in
 
 def _skip(text: str, start: int) -> int:
     """The end of the container that `start` is inside of."""
+    if flat := _FLAT.match(text, start):
+        return flat.end()
     depth = 1
     while depth and (bracket := _BRACKET.match(text, start)):
         depth += 1 if bracket[1] in "{[" else -1

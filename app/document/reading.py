@@ -22,6 +22,7 @@ from functools import reduce
 from pathlib import Path
 from typing import Any, cast, get_args
 
+import msgspec
 from halation.nodes import ColorSettings, LengthUnits, Node, Plain, Value, catalogue, length_unit_fault
 from msgspec import Struct, field
 
@@ -37,7 +38,7 @@ from ..resources.sandbox import Sandbox
 from . import limits, records
 from .animation import read_animation
 from .code import read_code_file
-from .disk import read_text
+from .disk import list_graph_files, read_text, resolve_file
 from .migrations import MIGRATIONS, Migration, migrate, newest
 from .records import convert, read_type, unknown_keys
 from .syntax import member, parse, word
@@ -87,10 +88,12 @@ class _DocumentLoader(Struct):
     sandbox: Sandbox | None
     """Where files of groups and of code may lie; None where none is read."""
     loaded: dict[Path, tuple[Graph, int]] = field(default_factory=dict[Path, tuple[Graph, int]])
+    shared: dict[bytes, tuple[Node, bool]] = field(default_factory=dict[bytes, tuple[Node, bool]])
+    """Nodes that were read, and whether they are muted, by their text."""
 
     def load_file(self, path: Path, sandbox: Sandbox, outer: tuple[Path, ...] = ()) -> tuple[Graph, int]:
         """The graph in a file, and how many nodes it has when all groups are expanded."""
-        real = _resolve(path) or path
+        real = resolve_file(path) or path
         if real not in self.loaded:
             self.loaded[real] = self.load_text(
                 read_text(path, sandbox=sandbox), str(path), str(path.parent), (*outer, real)
@@ -138,12 +141,11 @@ class _BodyReader(Struct):
         nodes, muted, count, section = dict[str, Item](), set[str](), 0, member(at, "nodes")
         for id, node in record.nodes.items():
             where = reader.entry_path(section, id, "node")
-            common = convert(node, records.TypeRecord, self.file, where)
-            nodes[id], number = reader.read_item(id, node, common.type, where, depth)
+            nodes[id], number, is_muted = reader.read_entry(id, node, where, depth)
             count += number
             if count > limits.MAX_NODES:
                 raise DocumentError(self.file, where, f"with all groups there are more than {limits.MAX_NODES} nodes")
-            if common.muted:
+            if is_muted:
                 muted.add(id)
         graph = Graph(
             nodes=nodes,
@@ -179,20 +181,20 @@ class _BodyReader(Struct):
             raise DocumentError(self.file, section, fault)
         return member(section, name)
 
-    def parse_port(self, text: Any, path: str) -> Port:
-        """The port that a link or control at `path` names."""
+    def parse_port(self, text: Any, section: str, key: str) -> Port:
+        """The port that a link or control names, which `key` of a section holds or is."""
         if not isinstance(text, str):
-            raise DocumentError(self.file, path, f"expected a string, got {word(text)}")
+            raise DocumentError(self.file, member(section, key), f"expected a string, got {word(text)}")
         try:
             return Port.parse(text)
         except GraphError as error:
-            raise DocumentError(self.file, path, str(error)) from None
+            raise DocumentError(self.file, member(section, key), str(error)) from None
 
     def read_links(self, raw: Mapping[str, Any], at: str) -> dict[Port, Port]:
         """The section `links`, target to source."""
         where = member(at, "links")
         return {
-            self.parse_port(target, member(where, target)): self.parse_port(source, member(where, target))
+            self.parse_port(target, where, target): self.parse_port(source, where, target)
             for target, source in raw.items()
         }
 
@@ -218,18 +220,34 @@ class _BodyReader(Struct):
         where = self.entry_path(member(at, "controls"), name, "control")
         record = convert(raw, records.ControlRecord, self.file, where)
         self.keep_unknown(f"controls.{name}", raw, records.ControlRecord)
-        return Control(self.parse_port(record.target, member(where, "target")), record.label, record.doc)
+        return Control(self.parse_port(record.target, where, "target"), record.label, record.doc)
 
     def read_animations(self, raw: Mapping[str, Any], nodes: Mapping[str, Item], at: str) -> dict[Port, Animation]:
         """The section `animation`, by target."""
-        animations: dict[Port, Animation] = {}
+        animations, section = dict[Port, Animation](), member(at, "animation")
         for target, item in raw.items():
-            where = member(member(at, "animation"), target)
-            port, animation = self.parse_port(target, where), read_animation(item, self.file, where)
+            port = self.parse_port(target, section, target)
+            where = member(section, target)
+            animation = read_animation(item, self.file, where)
             value = find_setting(nodes[port.node], port.socket) if port.node in nodes else None
             animations[port] = adapt_animation(value, animation) if value else animation
             self.keep_unknown(f"animation.{target}", item, records.AnimationRecord)
         return animations
+
+    def read_entry(self, id: str, raw: Any, at: str, depth: int) -> tuple[Item, int, bool]:
+        """A node, how many nodes it has when groups are expanded, and whether it is muted.
+
+        Nodes are immutable, and many are written alike: such nodes are one object, which is read once. A node is not
+        shared if something of it is kept in `extra`, or if it may read a file.
+        """
+        text = msgspec.json.encode(raw)
+        if (node := self.loading.shared.get(text)) is not None:
+            return node[0], 1, node[1]
+        common, unknown_count = convert(raw, records.TypeRecord, self.file, at), len(self.extra)
+        item, count = self.read_item(id, raw, common.type, at, depth)
+        if common.type in self.loading.types and isinstance(item, Node) and len(self.extra) == unknown_count:
+            self.loading.shared[text] = item, common.muted
+        return item, count, common.muted
 
     def read_item(self, id: str, raw: dict[str, Any], type: str, at: str, depth: int) -> tuple[Item, int]:
         """A node, and how many nodes it has when groups are expanded."""
@@ -350,24 +368,15 @@ class _BodyReader(Struct):
         assert sandbox is not None, "groups in files are not read without a sandbox"
         if reason := sandbox.fault(inner):
             raise DocumentError(self.file, at, f"the group file '{inner}' {reason}")
-        real = _resolve(inner)
+        real = resolve_file(inner)
         if real is None:
-            near = did_you_mean(inner.name, _graphs_in(inner.parent))
+            near = did_you_mean(inner.name, list_graph_files(inner.parent))
             fault = f"the group file '{inner}' does not exist{near}"
             raise DocumentError(self.file, at, fault, rule="missing-group")
         if real in self.outer:
             loop = " -> ".join(file.name for file in (*self.outer[self.outer.index(real) :], real))
             raise DocumentError(self.file, at, f"a group cannot hold itself: {loop}")
         return self.loading.load_file(inner, sandbox, self.outer)
-
-
-def _resolve(path: Path) -> Path | None:
-    """The file with links followed, or None if there is none."""
-    try:
-        real = path.resolve()
-        return real if real.is_file() else None
-    except (OSError, ValueError, RuntimeError):
-        return None
 
 
 def _make_node(kind: type[Node], values: Mapping[str, Any], units: LengthUnits) -> Node:
@@ -380,10 +389,3 @@ def _make_node(kind: type[Node], values: Mapping[str, Any], units: LengthUnits) 
 
 def _newer(subject: str, newest_known: int) -> str:
     return f"{subject} is newer than {newest_known}, the newest known here: update Halation"
-
-
-def _graphs_in(folder: Path) -> tuple[str, ...]:
-    try:
-        return tuple(path.name for path in folder.glob("*.json"))
-    except (OSError, ValueError):
-        return ()

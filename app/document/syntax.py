@@ -13,6 +13,8 @@ from functools import partial, reduce
 from itertools import accumulate
 from typing import Any, NamedTuple, cast
 
+import msgspec
+
 from ..errors import DocumentError
 from .limits import MAX_KEY, MAX_NESTING, MAX_PARTS, size_fault
 from .syntax_faults import explain_syntax
@@ -25,6 +27,9 @@ _ESCAPED_HALF = re.compile(r"\\u[dD][89a-fA-F]")
 _HALF = re.compile(r"[\ud800-\udfff]")
 """Texts that may be half of a surrogate pair."""
 _STEPS = {"{": 1, "[": 1, "}": -1, "]": -1}
+
+_NO_END_OF_KEY = (b'\\":', b':":', b',":', b'[":', b'{":')
+"""Where a quote and a colon may be part of a string."""
 
 
 class Trail(NamedTuple):
@@ -47,6 +52,8 @@ def parse(text: str, file: str) -> dict[str, Any]:
     outline = _STRING.sub("", text)
     if fault := _shape_fault(outline):
         raise DocumentError(file, "", fault)
+    if plain_tree := _parse_plain(text, outline):
+        return plain_tree
     odd_objects: list[_Twice] = []
     try:
         tree: Any = json.loads(text, object_pairs_hook=partial(_make_object, odd_objects))
@@ -62,6 +69,24 @@ def parse(text: str, file: str) -> dict[str, Any]:
     if not isinstance(tree, dict):
         raise DocumentError(file, "", "expected an object, got " + word(cast("object", tree)))
     return cast("dict[str, Any]", tree)
+
+
+def _parse_plain(text: str, outline: str) -> dict[str, Any] | None:
+    """The object that `text` holds, if it has no fault; None if it may have one, which costs a slower look at it.
+
+    msgspec reads in a fifth of the time. Of a key that is there twice it takes the last one: the tree, written again,
+    then has fewer colons than the text.
+    """
+    if _is_suspect(text, outline) or max(map(len, text.split('"'))) > MAX_KEY:
+        return None
+    try:
+        tree = msgspec.json.decode(text)
+    except (msgspec.MsgspecError, UnicodeError, RecursionError):
+        return None
+    written = msgspec.json.encode(tree)
+    if any(odd in written for odd in _NO_END_OF_KEY) or written.count(b'":') != outline.count(":"):
+        return None
+    return cast("dict[str, Any]", tree) if isinstance(tree, dict) else None
 
 
 def member(path: str, key: str | int) -> str:

@@ -7,8 +7,9 @@ keys that reading kept are put back into their objects.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping, Sized
 from dataclasses import fields
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +32,29 @@ from .migrations import FORMAT
 from .records import type_name
 
 Section = dict[str, Any]
+
+
+class LazySection(Mapping[str, Any]):
+    """A section that is made when its first entry is asked for: a comparison often ends before it.
+
+    It has as many entries as `parts`.
+    """
+
+    def __init__(self, parts: Sized, make: Callable[[], Mapping[str, Any]]) -> None:
+        self._parts, self._make = parts, make
+
+    @cached_property
+    def _entries(self) -> Mapping[str, Any]:
+        return self._make()
+
+    def __len__(self) -> int:
+        return len(self._parts)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._entries)
+
+    def __getitem__(self, name: str) -> Any:
+        return self._entries[name]
 
 
 def dumps(graph: Graph) -> str:
@@ -91,8 +115,11 @@ def _graph(graph: Graph) -> Section:
         "inputs": entries("inputs", {name: _input(name, end) for name, end in graph.inputs.items()}),
         "outputs": entries("outputs", {name: _output(end) for name, end in graph.outputs.items()}),
         "controls": entries("controls", {name: _control(item) for name, item in graph.controls.items()}),
-        "nodes": entries("nodes", {id: _item(id, item, graph) for id, item in graph.nodes.items()}),
-        "links": {str(target): str(source) for target, source in graph.links.items()},
+        "nodes": LazySection(
+            graph.nodes,
+            lambda: entries("nodes", {id: _item(id, item, graph) for id, item in graph.nodes.items()}),
+        ),
+        "links": LazySection(graph.links, lambda: {str(target): str(source) for target, source in graph.links.items()}),
         "animation": entries(
             "animation",
             {str(port): describe_animation(item, _find_value(graph, port)) for port, item in graph.animation.items()},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import builtins
 import math
 import re
 from collections.abc import Collection, Iterator, Mapping
@@ -99,13 +100,18 @@ def _inside(graph: Graph, node_types: Mapping[str, type[Node]], depth: int) -> I
     yield from _ends(graph)
     yield from _links(graph)
     needed = graph.upstream(OUTPUTS)
+    sound_nodes = set[int]()  # files that say the same of many nodes make one object of them
     for id, item in graph.nodes.items():
         if fault := name_fault(id, "node"):
             yield Problem(id, "", fault, rules.BAD_NAME)
         if isinstance(item, Unknown):
             yield _unknown(id, item, node_types)
             continue
-        yield from _values(id, item)
+        if builtins.id(item) not in sound_nodes:
+            value_problems = [*_values(id, item)]
+            yield from value_problems
+            if not value_problems:
+                sound_nodes.add(builtins.id(item))
         yield from _check_inputs(graph, id, item, id in needed)
         if isinstance(item, Group):
             yield from _group(id, item, node_types, depth)

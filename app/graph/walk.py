@@ -11,7 +11,7 @@ from typing import Generic, TypeVar
 from halation.nodes import Node
 
 from ..errors import GraphError
-from .model import Port
+from .model import Port, Unknown
 from .names import INPUTS, OUTPUTS
 
 Steps = Mapping[str, Iterable[str]]
@@ -151,9 +151,9 @@ class Wired(Generic[T]):
         """
         start, end = self.nodes.get(source.node), self.nodes.get(target.node)
         return (
-            type(start) if isinstance(start, Node) else source.node,
+            type(start) if isinstance(start, Node | Unknown) else source.node,
             source.socket,
-            type(end) if isinstance(end, Node) else target.node,
+            type(end) if isinstance(end, Node | Unknown) else target.node,
             target.socket,
         )
 

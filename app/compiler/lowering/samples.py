@@ -1,7 +1,8 @@
 """Lowers a graph only to find its faults: of nodes that lower alike, the first one is lowered.
 
-What lowering a node can refuse depends on its class, its values, and the shapes of what it reads. A node that agrees in
-all of these with one that was lowered before stands for the same operands. So a chain of 100,000 equal nodes takes one
+What lowering a node can refuse depends on its class, its values, and the shapes of what it reads; of a pointwise node
+valid numbers decide nothing. A node that agrees in all of these with one that was lowered before stands for the same
+operands. So a chain of 100,000 equal nodes takes one
 operation, and all later stages see few. The pixels of such a program have no meaning.
 
 A node is no sample if a file, a memory of an earlier frame or the content of other operations decided what it added.
@@ -11,13 +12,16 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Mapping
 
+from halation.nodes import Node, Pointwise
 from msgspec import Struct
 
+from ...errors import GraphError
 from ...graph import Graph, Port
 from ...resources.provider import ResourceProvider
 from ..ir import Builder, LoweredProgram, Operand, PictureShape, Ref
 from ..library import Library
 from ..request import Request
+from . import constants, masks
 from .graph_at_frames import Feed, GraphAtFrames
 from .lower import Lowering
 from .steps import LoweringStep, PortAtOffset, field_port, is_field_port
@@ -44,6 +48,7 @@ class SampleLowering:
     def __init__(self, lowering: Lowering) -> None:
         self._lowering = lowering
         self._samples: dict[Hashable, LoweredSample] = {}
+        self._pointwise: dict[int, Hashable] = {}
         self._has_fields = False
 
     def lower_nodes(self) -> None:
@@ -55,7 +60,9 @@ class SampleLowering:
                 step = self._lowering.run_step(key)
                 self._has_fields |= any(is_field_port(port) for port, _ in step.results)
                 if likeness is not None and _is_sample(step):
-                    operands = {port.socket: operand for (port, _), operand in step.results.items() if port.node == key[0]}
+                    operands = {
+                        port.socket: operand for (port, _), operand in step.results.items() if port.node == key[0]
+                    }
                     self._samples[likeness] = LoweredSample(operands, step.whole_height)
             else:
                 self._repeat(key, sample)
@@ -65,22 +72,30 @@ class SampleLowering:
         """All that decides whether a node can be lowered; None where that is not known without lowering it."""
         lowering = self._lowering
         moment = path, lowering.frame + offset
-        feeds = tuple(
-            [self._describe_feed(name, feed) for name, feed in lowering.frames.find_feeds(moment).items()]
-        )
-        flat = lowering.flat
-        likeness = (
-            lowering.frames.node_at(*moment),
-            offset,
-            path in flat.muted,
-            flat.find_reference_height(path),
-            feeds,
-        )
-        try:
-            hash(likeness)
-        except TypeError:
+        feeds = tuple([self._describe_feed(name, feed) for name, feed in lowering.frames.find_feeds(moment).items()])
+        if None in feeds:
             return None
-        return None if None in feeds else likeness
+        flat = lowering.flat
+        try:
+            node = self._describe_node(path, lowering.frames.node_at(*moment))
+        except GraphError:
+            return None  # lowering it will raise the error, with the path of the node
+        return node, offset, path in flat.muted, flat.find_reference_height(path), feeds
+
+    def _describe_node(self, path: str, node: Node) -> Hashable:
+        """What of a node decides whether it can be lowered.
+
+        Valid numbers of a pointwise node decide nothing, except that it may be neutral. Others must be the same object,
+        as those are that a file writes alike.
+        """
+        if not isinstance(node, Pointwise):
+            return id(node)
+        if id(node) not in self._pointwise:
+            constants.check_values(path, node)
+            choices = tuple(node.setting(name) for name, value in node.values.items() if value.choices)
+            neutral = node.identity(), masks.hides_node(node)
+            self._pointwise[id(node)] = type(node), choices, neutral, node.length_units
+        return self._pointwise[id(node)]
 
     def _describe_feed(self, name: str, feed: Feed) -> Hashable | None:
         """What a node sees of a link before it is lowered; None for a link from an input of the graph."""
