@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ..resources.sandbox import Sandbox
 
 if TYPE_CHECKING:
-    from halation.nodes import ColorChange, ColorSettings, Missing, Render, Scene
+    from halation.nodes import ColorChange, ColorSettings, Missing, Render, Scene, TextBlock, TypesetText
 
     from ..graph import Graph
     from ..resources.color_program import ColorProgram
@@ -78,3 +78,11 @@ class LazyResourceProvider:
     def load_mesh(self, scene: Scene) -> Mesh:
         """The triangles of a scene."""
         return self.pictures.load_mesh(scene)
+
+    def typeset(self, block: TextBlock) -> TypesetText:
+        """The outlines of a text."""
+        return self.pictures.typeset(block)
+
+    def read_attributes(self, path: str) -> Mapping[str, str]:
+        """What the header of a picture says about it."""
+        return self.pictures.read_attributes(path)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     import numpy as np
-    from halation.nodes import ColorChange, ColorSettings, Missing, Render, Scene
+    from halation.nodes import ColorChange, ColorSettings, Missing, Render, Scene, TextBlock, TypesetText
 
     from ..media.layers import ImageInfo
     from ..resources.color_program import ColorProgram
@@ -197,6 +197,19 @@ class MediaProvider:
         from ..media.meshes.load import load_mesh
 
         return load_mesh(scene, sandbox=self.sandbox)
+
+    def typeset(self, block: TextBlock) -> TypesetText:
+        """The outlines of a text. Raises InputError for a font that cannot be used."""
+        from ..media.lettering.typesetting import typeset
+
+        return typeset(block, self.sandbox)
+
+    def read_attributes(self, path: str) -> Mapping[str, str]:
+        """What the header of a picture says, as texts by name. Raises InputError for one that cannot be read."""
+        from ..media.metadata import read_metadata
+
+        attributes = read_metadata(path, sandbox=self.sandbox)
+        return {name: str(getattr(content, "value", content)) for name, content in attributes.items()}
 
     def find_info(self, path: str) -> ImageInfo:
         """A file's header, read once."""

@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from halation.nodes import ColorChange, ColorSettings, Missing, Render, Scene
+from halation.nodes import ColorChange, ColorSettings, Missing, Render, Scene, TextBlock, TypesetText
 from msgspec import Struct, field
 
 from ..compiler import Request, examine, find_named_files
@@ -145,6 +145,14 @@ class NotingProvider(Struct, dict=True, eq=False):
     def load_mesh(self, scene: Scene) -> Mesh:
         """The triangles of a scene."""
         return self._answer("mesh", scene, lambda: self.pictures.load_mesh(scene))
+
+    def typeset(self, block: TextBlock) -> TypesetText:
+        """The outlines of a text."""
+        return self._answer("text", block, lambda: self.pictures.typeset(block))
+
+    def read_attributes(self, path: str) -> Mapping[str, str]:
+        """What the header of a picture says; nothing if it cannot be read."""
+        return self._answer_or_note(path, ("header", path), lambda: self.pictures.read_attributes(path)) or {}
 
     def _answer_or_note(self, path: str, key: object, ask: Callable[[], T]) -> T | None:
         """The answer to a question, or None if there is none, which is noted."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Protocol
 
-from halation.nodes import ColorChange, ColorSettings, Missing, Render, Scene, Size
+from halation.nodes import ColorChange, ColorSettings, Missing, Render, Scene, Size, TextBlock, TypesetText
 from msgspec import Struct
 
 from .color_program import ColorProgram
@@ -63,4 +63,12 @@ class ResourceProvider(Protocol):
 
     def load_mesh(self, scene: Scene) -> Mesh:
         """Get the triangles of a scene."""
+        ...
+
+    def typeset(self, block: TextBlock) -> TypesetText:
+        """Get the outlines of a text. Raises InputError for a font that cannot be used."""
+        ...
+
+    def read_attributes(self, path: str) -> Mapping[str, str]:
+        """Get what the header of a picture says about it, as texts by name."""
         ...

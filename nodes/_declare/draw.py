@@ -10,6 +10,7 @@ from msgspec import Struct
 
 from .camera import CameraModel
 from .host import HostProgram
+from .lettering import TextBlock, TypesetText
 from .recolor import ColorChange
 from .render import Render
 from .scene import Motion, Scene
@@ -289,6 +290,16 @@ class Draw(Protocol):
         """The layers of a render's file by role. `named` are layers that the user has chosen for a role.
 
         For `Source` nodes.
+        """
+        ...
+
+    def typeset(self, block: TextBlock, /) -> TypesetText:
+        """The outlines of a text, shaped and broken into lines as its scripts need it."""
+        ...
+
+    def expand_text(self, text: str, picture: Socket, /) -> str:
+        """A text with its tokens replaced, such as `{frame}`; those about a file are about the one that is the source
+        of `picture`. Raises GraphError for a token that nobody knows.
         """
         ...
 

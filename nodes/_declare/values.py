@@ -46,8 +46,9 @@ Turns = Literal["clockwise", "counterclockwise"]
 Missing = Literal["error", "hold", "nearest", "black"]
 """What a frame of a sequence shows if it has no file."""
 
-Holds = Literal["picture", "render", "table", "scene"]
-"""The content of a file: pixels, layers of a render, a color table (.cube, .3dl, ...), or meshes (.glb, .obj, ...)."""
+Holds = Literal["picture", "render", "table", "scene", "font"]
+"""The content of a file: pixels, layers of a render, a color table (.cube, .3dl, ...), meshes (.glb, .obj, ...), or a
+font (.ttf, .otf, ...)."""
 
 
 class Folded(Struct, frozen=True):
@@ -79,6 +80,10 @@ class Picks(Struct, frozen=True):
 
     layer: str
     path: str = "path"
+
+
+class Lines(Struct, frozen=True):
+    """The value is a text of several lines: its field in interfaces has room for them."""
 
 
 class Swatch(Struct, frozen=True):
@@ -194,6 +199,8 @@ FilePath = Annotated[str, File()]
 RenderPath = Annotated[str, File(holds="render")]
 TablePath = Annotated[str, File(holds="table")]
 ScenePath = Annotated[str, File(holds="scene")]
+FontPath = Annotated[str, File(holds="font")]
+Prose = Annotated[str, Lines()]
 Points = Annotated[tuple[float, ...], Curve()]
 Stops = Annotated[tuple[float, ...], ColorRamp()]
 SplinePoints = Annotated[tuple[float, ...], Spline()]
@@ -247,6 +254,8 @@ class Value(Struct, frozen=True):
     """True for the name of a color space."""
     folded: bool = False
     """True if it belongs to the mask that many nodes have: interfaces show it only where it is used."""
+    has_lines: bool = False
+    """True for a text of several lines."""
     items: Items | None = None
     """What named items it can hold."""
 
@@ -293,6 +302,8 @@ def read_value(name: str, hint: Any, default: Any) -> Value:
             facts["doc"] = note.doc or facts.get("doc", "")
         elif isinstance(note, Doc):
             facts["doc"] = note.text
+        elif isinstance(note, Lines):
+            facts["has_lines"] = True
         elif isinstance(note, Swatch):
             facts["type"] = "color"
         elif isinstance(note, Wheel):

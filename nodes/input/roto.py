@@ -1,8 +1,4 @@
-"""Rotoscope: named splines as one mask.
-
-The GLSL gets each curve in *spans* of eight straight segments, and for each tile of the picture the spans that matter
-there. So a pixel looks at a few segments only, however many points there are and however wide a feather is.
-"""
+"""Rotoscope: named splines as one mask. `_paths.py` says how they become pixels."""
 
 import math
 from collections.abc import Mapping
@@ -30,16 +26,7 @@ from .._declare import (
     roto_shapes_of,
     split_points,
 )
-
-_TILE = 16
-_SEGMENTS = 8
-"""Segments of a span."""
-
-_BITS = 24
-"""Spans to a channel of a texel: as many as a float holds exactly."""
-
-_BLOCK = 16
-"""Spans side by side in the tables, so that no table is higher than a texture can be."""
+from ._paths import BITS, BLOCK, SEGMENTS, PathFill, count_blocks, draw_coverage, draw_distance
 
 _FINE = 0.002
 """How far in pixels a long segment may be from its curve: keeps coverage within 2e-3 of exact areas, as the polygon is
@@ -79,12 +66,10 @@ class _Path(NamedTuple):
         return self.outline.feather + max(self.feathers)
 
     @property
-    def span_count(self) -> int:
-        return sum(self.span_counts)
-
-    @property
-    def channel_count(self) -> int:
-        return -(-self.span_count // _BITS)
+    def fill(self) -> PathFill:
+        """How it changes the mask below."""
+        outline = self.outline
+        return PathFill(sum(self.span_counts), _MODES.index(outline.mode), outline.opacity, outline.invert)
 
 
 class Roto(Filter):
@@ -132,52 +117,23 @@ class Roto(Filter):
     def _draw_soft(self, draw: Draw, mask: Drawn, path: _Path) -> Drawn:
         """One outline with a feather: its exact coverage says which side of the edge a pixel is on."""
         outline = path.outline
-        nothing = draw("roto_nothing", size=(1, 1), result=Field())
+        nothing = draw("path_nothing", size=(1, 1), result=Field())
         cover = _draw_coverage(draw, nothing, [path._replace(outline=RotoShape())])
+        nearest = draw_distance(draw, _list_chords(path), 0.5 * path.feather)
         return draw.point(
-            "roto_soft", mask=mask, cover=cover, nearest=_draw_distance(draw, path), result=Field(),
+            "roto_soft", mask=mask, cover=cover, nearest=nearest, result=Field(),
             mode=_MODES.index(outline.mode), feather=outline.feather, opacity=outline.opacity, invert=outline.invert,
         )  # fmt: skip
 
 
 def _draw_coverage(draw: Draw, mask: Drawn, paths: list[_Path]) -> Drawn:
-    """Sort spans into tiles, sum what lies left of each tile, then cover pixels: see the GLSL."""
-    width, height = draw.size
-    across, down, count = -(-width // _TILE), -(-height // _TILE), len(paths)
-    channels = sum(path.channel_count for path in paths)
-    blocks, rows = -(-channels * _BITS // _BLOCK), -(-channels // 16)
-    groups = max(-(-path.channel_count // (4 * _BITS)) for path in paths)
-    spans = draw.table(_pack_spans(paths), _BLOCK)
-    curves = draw.table(_pack_curves(paths), 3 * _BLOCK)
-    shapes, owners = draw.table(_pack_shapes(paths), 2), draw.table(_pack_channels(paths), _BLOCK)
-    four = Vector(width=4)
-    points = draw("roto_points", spans=spans, curves=curves, size=(_BLOCK * _SEGMENTS, blocks), result=four)
-    boxes = draw("roto_boxes", spans=spans, points=points, size=(_BLOCK, blocks), result=four)
-    hulls = draw("roto_hulls", owners=owners, boxes=boxes, size=owners.size, result=four)
-    words = draw(
-        "roto_words", spans=spans, points=points, boxes=boxes, hulls=hulls, owners=owners,
-        size=(4 * across, rows * down), result=four, rows=rows, channels=channels,
-    )  # fmt: skip
-    digest = draw(
-        "roto_digest", words=words, shapes=shapes, size=(across * count * groups, down), result=four,
-        rows=rows, groups=groups, count=count,
-    )  # fmt: skip
-    steps = draw(
-        "roto_crossings", spans=spans, points=points, shapes=shapes, boxes=boxes, words=words, digest=digest,
-        size=(across * count, -(-height // 4)), result=four,
-        rows=rows, groups=groups, count=count,
-    )  # fmt: skip
-    backdrop = draw("roto_backdrop", steps=steps, size=steps.size, result=four, count=count)
-    levels = draw(
-        "roto_level", shapes=shapes, digest=digest, backdrop=backdrop, size=(across, down), result=four,
-        groups=groups, count=count,
-    )  # fmt: skip
-    return draw(
-        "roto_cover", mask=mask, spans=spans, points=points, shapes=shapes, boxes=boxes, words=words, digest=digest,
-        backdrop=backdrop, levels=levels,
-        overlap={"mask": 0}, result=Field(), rows=rows, groups=groups, count=count,
-        segments=_SEGMENTS,
-    )  # fmt: skip
+    """The mask with the coverage of splines, whose points are found on the device."""
+    fills = [path.fill for path in paths]
+    spans = draw.table(_pack_spans(paths), BLOCK)
+    curves = draw.table(_pack_curves(paths), 3 * BLOCK)
+    size = (BLOCK * SEGMENTS, count_blocks(fills))
+    points = draw("roto_points", spans=spans, curves=curves, size=size, result=Vector(width=4))
+    return draw_coverage(draw, mask, fills, spans, points)
 
 
 def _trace_path(outline: RotoShape, size: Size) -> _Path:
@@ -204,7 +160,7 @@ def _count_spans(curve: CubicCurve) -> int:
     """How many spans a curve needs. Its bend bounds how far n segments are from it: 3 / 4 of the bend / n^2."""
     length, bend = sum(math.dist(a, b) for a, b in pairwise(curve)), _measure_bend(curve)
     segments = min(math.sqrt(0.75 * bend / _FINE), max(length / _SHORT, math.sqrt(0.75 * bend / _COARSE)))
-    return min(max(1, math.ceil(max(segments, length / _LONG) / _SEGMENTS)), _MOST_SPANS)
+    return min(max(1, math.ceil(max(segments, length / _LONG) / SEGMENTS)), _MOST_SPANS)
 
 
 def _measure_bend(curve: CubicCurve) -> float:
@@ -239,63 +195,8 @@ def _pack_spans(paths: list[_Path]) -> tuple[float, ...]:
                 numbers += (curve, part, count, span)
             curve += 1
         numbers[-1] = base
-        numbers += [0.0] * (4 * (path.channel_count * _BITS - path.span_count))
+        numbers += [0.0] * (4 * (path.fill.channel_count * BITS - path.fill.span_count))
     return tuple(numbers)
-
-
-def _pack_shapes(paths: list[_Path]) -> tuple[float, ...]:
-    """Two texels for each outline.
-
-    The first channel, the channels, the spans, the mode. The opacity, whether it is inverted; the rest is free.
-    """
-    numbers, first = list[float](), 0
-    for path in paths:
-        outline = path.outline
-        numbers += (first, path.channel_count, path.span_count, _MODES.index(outline.mode))
-        numbers += (outline.opacity, float(outline.invert), 0.0, 0.0)
-        first += path.channel_count
-    return tuple(numbers)
-
-
-def _pack_channels(paths: list[_Path]) -> tuple[float, ...]:
-    """For each channel of the words the number of its outline, and how many spans it stands for."""
-    numbers = list[float]()
-    for place, path in enumerate(paths):
-        for start in range(0, path.span_count, _BITS):
-            numbers += (place, min(path.span_count - start, _BITS), 0.0, 0.0)
-    return tuple(numbers)
-
-
-# --- soft edges ----------------------------------------------------------------------------------------------------
-
-
-def _draw_distance(draw: Draw, path: _Path) -> Drawn:
-    """The distance from each pixel to an outline, and the feather there; chords stand for the curves."""
-    chords = _list_chords(path)
-    across, down = -(-draw.size[0] // _TILE), -(-draw.size[1] // _TILE)
-    count, channels = len(chords) // 8, -(-len(chords) // (8 * _BITS))
-    rows, groups = -(-channels // 16), -(-channels // (4 * _BITS))
-    table, four, reach = draw.table(chords, 2 * _BLOCK), Vector(width=4), 0.5 * path.feather
-    hulls = draw(
-        "roto_chord_hulls", chords=table, size=(_BLOCK, -(-channels // _BLOCK)), result=four, chord_count=count
-    )
-    nearest = draw(
-        "roto_nearest", chords=table, hulls=hulls, size=(across, down), result=Field(),
-        chord_count=count, channels=channels,
-    )  # fmt: skip
-    words = draw(
-        "roto_chord_words", chords=table, hulls=hulls, nearest=nearest, size=(4 * across, rows * down), result=four,
-        rows=rows, channels=channels, chord_count=count, reach=reach,
-    )  # fmt: skip
-    shape = draw.table((0.0, channels, count, 0.0), 1)
-    digest = draw(
-        "roto_digest", words=words, shapes=shape, size=(across * groups, down), result=four,
-        rows=rows, groups=groups, count=1,
-    )  # fmt: skip
-    return draw(
-        "roto_distance", chords=table, words=words, digest=digest, overlap={}, result=Vector(width=2),
-        rows=rows, groups=groups, parts=-(-channels // _BITS), reach=reach,
-    )  # fmt: skip
 
 
 def _list_chords(path: _Path) -> tuple[float, ...]:

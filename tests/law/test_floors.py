@@ -36,6 +36,8 @@ HOMES = {
     "OpenImageIO": "media",
     "PyOpenColorIO": "color",
     "av": "media",
+    "uharfbuzz": "media",
+    "bidi": "media",
     "pyoidn": "media",
     "glfw": "editor",
     "imgui_bundle": "editor",

@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from halation.nodes import ColorChange, ColorSettings, Kind, Missing, Render, Scene, Size
+from halation.nodes import ColorChange, ColorSettings, Kind, Missing, Render, Scene, Size, TextBlock, TypesetText
 
 from ...graph import Graph, Port
 from ...resources.color_program import ColorProgram
@@ -72,6 +72,12 @@ class _BoundProvider:
 
     def load_mesh(self, scene: Scene) -> Mesh:
         return self.provider.load_mesh(scene)
+
+    def typeset(self, block: TextBlock) -> TypesetText:
+        return self.provider.typeset(block)
+
+    def read_attributes(self, path: str) -> Mapping[str, str]:
+        return self.provider.read_attributes(path)
 
 
 def export_isf(

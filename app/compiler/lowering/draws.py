@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from functools import partial
 from types import MappingProxyType
 from typing import Literal
 
@@ -89,6 +90,7 @@ class Recorder:
         self.size, self.rate, self.start = size, rate, start
         self.reads_frame = False
         """Whether the node asked for the frame."""
+        self.typeset, self.expand_text = resources.typeset, partial(resources.expand_text, self)
         self._owner, self._inputs, self._node = inputs.path, inputs, node
         self._builder, self._library, self._resources = builder, library, resources
         self._blurs = BlurBuilder(builder, library, inputs.path)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from halation.nodes import CameraModel, ColorChange, Kind, Node, Render, Scene, Size, Socket
+from halation.nodes import CameraModel, ColorChange, Kind, Node, Render, Scene, Size, Socket, TextBlock, TypesetText
 from msgspec import Struct, field
 
 from ...graph import Port
@@ -12,6 +12,7 @@ from ...resources.color_program import ColorProgram
 from ...resources.mesh import Mesh
 from ...resources.picture import Picture
 from ..ir import Operand, PictureShape, PlannedObject, Ref
+from .text_tokens import TextClock
 
 
 class NodeInputs(Struct, frozen=True):
@@ -33,13 +34,15 @@ class NodeInputs(Struct, frozen=True):
 
 
 class NodeResources(Struct, frozen=True):
-    """What a node can read from files: pixels, color programs, meshes, and the contents of a render."""
+    """What a node can read from files: pixels, color programs, meshes, the contents of a render, and text in a font."""
 
     read_picture: Callable[[Picture], Ref]
     write_color_program: Callable[[ColorChange], ColorProgram]
     load_mesh: Callable[[Scene], Mesh]
     describe_render: Callable[[str, Mapping[str, str]], Render]
     read_asset: Callable[[Picture], Ref]
+    typeset: Callable[[TextBlock], TypesetText]
+    expand_text: Callable[[TextClock, str, Socket], str]
 
 
 class DrawnPicture(Struct, frozen=True):

@@ -5,21 +5,35 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cached_property
 
-from halation.nodes import ColorChange, Kind, LookupFile, Missing, Render, Scene, SceneFile, Size, Socket
+from halation.nodes import (
+    ColorChange,
+    Kind,
+    LookupFile,
+    Missing,
+    Render,
+    Scene,
+    SceneFile,
+    Size,
+    Socket,
+    TextBlock,
+    TypesetText,
+)
 from msgspec.structs import replace
 
-from ...errors import HalationError, NoFileError, describe_owner
+from ...errors import GraphError, HalationError, NoFileError, describe_owner
 from ...graph import Graph, color_settings, make_socket
 from ...resources.color_program import ColorProgram
 from ...resources.mesh import Mesh
 from ...resources.picture import Picture
 from ...resources.provider import FrameFile, PictureProbe, ResourceProvider
+from ...resources.today import read_date
 from ..areas import Neighborhood, scale_size
 from ..ir import Accessor, Builder, Call, Gather, Operand, Parameter, PictureShape, Read, Ref, UniformConstant
 from ..request import Request
 from .expand import FlatGraph, make_zero
 from .node_inputs import NodeInputs, NodeResources
 from .references import ReferencedPictures
+from .text_tokens import TextClock, TokenSources, expand_tokens, find_source_picture
 
 DEFAULT_CANVAS: Size = (1920, 1080)
 """The size of a graph that neither sets a size nor reads a picture: HDTV (ITU-R BT.709)."""
@@ -31,7 +45,7 @@ class PictureBuilder:
     def __init__(
         self, graph: Graph, flat: FlatGraph, request: Request, provider: ResourceProvider, builder: Builder
     ) -> None:
-        self.named = ReferencedPictures(flat, request.bindings)
+        self.named, self._flat = ReferencedPictures(flat, request.bindings), flat
         self._graph_size = graph.settings.size
         self._color = color_settings(graph)
         self._request, self._provider, self._builder = request, provider, builder
@@ -125,7 +139,29 @@ class PictureBuilder:
             whole = replace(picture, path=locate(picture.path), within=self.named.locate(picture.within, inputs.path))
             return self.read_asset(whole, inputs.path)
 
-        return NodeResources(read, recolor, mesh, render, asset)
+        def typeset(block: TextBlock) -> TypesetText:
+            if block.typeface.path:
+                block = replace(block, typeface=replace(block.typeface, path=locate(block.typeface.path)))
+            return self._provider.typeset(block)
+
+        def expand_text(clock: TextClock, text: str, picture: Socket) -> str:
+            def find_file() -> str:
+                return self._find_source_file(inputs, picture.name)
+
+            try:
+                return expand_tokens(text, clock, TokenSources(find_file, self._provider.read_attributes, read_date))
+            except GraphError as fault:
+                raise GraphError(f"{describe_owner(inputs.path)}: {fault}", node=inputs.path) from fault
+
+        return NodeResources(read, recolor, mesh, render, asset, typeset, expand_text)
+
+    def _find_source_file(self, inputs: NodeInputs, socket: str) -> str:
+        """The file of the first picture that an input is made of, at this frame; "" if none comes from a file."""
+        try:
+            picture, owner = find_source_picture(self._flat, self.named, inputs.path, socket)
+        except LookupError:
+            return ""
+        return "" if picture.in_memory else self._find_file(picture, owner, inputs.frame, "nearest").path
 
     def fit(self, ref: Ref, size: Size, owner: str) -> Ref:
         """The picture at another size. Equal up to rounding: stretched; otherwise scaled to cover and cropped."""

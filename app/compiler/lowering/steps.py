@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from halation.nodes import CameraModel, ColorChange, ColorSettings, Missing, Render, Scene, Size
+from halation.nodes import CameraModel, ColorChange, ColorSettings, Missing, Render, Scene, Size, TextBlock, TypesetText
 from msgspec import Struct, field
 
 from ...graph import Port
@@ -101,6 +101,12 @@ class WatchedProvider:
 
     def load_mesh(self, scene: Scene) -> Mesh:
         return self._note_read().load_mesh(scene)
+
+    def typeset(self, block: TextBlock) -> TypesetText:
+        return self._note_read().typeset(block)
+
+    def read_attributes(self, path: str) -> Mapping[str, str]:
+        return self._note_read().read_attributes(path)
 
     def _note_read(self) -> ResourceProvider:
         self.is_read = True

@@ -9,7 +9,7 @@ from typing import Literal
 
 from halation.nodes import Value
 
-Purpose = Literal["graph", "image", "table", "scene", "config", "code", "export"]
+Purpose = Literal["graph", "image", "table", "scene", "font", "config", "code", "export"]
 """The kind of file: it decides which files are listed and which folder is remembered."""
 
 
@@ -35,6 +35,8 @@ def browse(declaration: Value, then: Callable[[Path], object]) -> Browse:
             return Browse("Choose a Color Table", "table", then)
         case "scene":
             return Browse("Choose Meshes", "scene", then)
+        case "font":
+            return Browse("Choose a Font", "font", then)
         case "picture" | "render":
             return Browse("Choose an Image", "image", then)
 

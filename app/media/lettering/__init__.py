@@ -1,0 +1,1 @@
+"""Text as outlines: fonts, shaping by HarfBuzz, the order of scripts that run both ways, lines."""
