@@ -29,7 +29,7 @@ MAX_SWATCHES = 24
 SwatchColor = tuple[float, float, float, float]
 """A scene-linear color with its alpha."""
 
-Purpose = Literal["graph", "image", "table", "scene", "config", "code", "export"]
+Purpose = Literal["graph", "image", "table", "scene", "font", "config", "code", "export"]
 
 
 def _scale(number: float) -> float:

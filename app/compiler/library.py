@@ -15,7 +15,7 @@ from halation.shaders import folder
 from msgspec import field
 
 from ..errors import ShaderError
-from ..glsl import GlslFunction, Text, parse
+from ..glsl import GlslFunction, GlslText, parse
 from ..graph.names import did_you_mean
 from ..resources.record import Record
 from ..resources.working_space import WorkingSpace
@@ -44,8 +44,10 @@ Chosen by judgement: more than a user has open at once."""
 class Library(Record, frozen=True):
     """Shader texts by name, such as `color/exposure` or `lib/color`."""
 
-    texts: Mapping[str, Text]
-    _closures: dict[tuple[str, ...], tuple[Text, ...]] = field(default_factory=dict[tuple[str, ...], tuple[Text, ...]])
+    texts: Mapping[str, GlslText]
+    _closures: dict[tuple[str, ...], tuple[GlslText, ...]] = field(
+        default_factory=dict[tuple[str, ...], tuple[GlslText, ...]]
+    )
     _light: dict[tuple[str, str], bool] = field(default_factory=dict[tuple[str, str], bool])
     _words: dict[tuple[str, str], frozenset[str]] = field(default_factory=dict[tuple[str, str], frozenset[str]])
     _uniforms: dict[tuple[str, str], frozenset[str]] = field(default_factory=dict[tuple[str, str], frozenset[str]])
@@ -57,7 +59,7 @@ class Library(Record, frozen=True):
         {"_closures", "_light", "_words", "_uniforms", "_digests", "_lines", "_derived"}
     )
 
-    def with_texts(self, texts: Iterable[Text]) -> Library:
+    def with_texts(self, texts: Iterable[GlslText]) -> Library:
         """This library with the code of a graph. Names of texts contain a hash, so equal names are equal code."""
         added = {text.name: text for text in texts}
         if not added:
@@ -68,7 +70,7 @@ class Library(Record, frozen=True):
         """This library for a working space; None is linear Rec.709, for which the files are written."""
         return self if working is None else self.with_replacement(working.text, f"{working}")
 
-    def with_replacement(self, text: Text, mark: str) -> Library:
+    def with_replacement(self, text: GlslText, mark: str) -> Library:
         """This library with another text in place of a file; `mark` identifies the content."""
         return self._derive({text.name: text}, frozenset({text.name, mark}))
 
@@ -88,10 +90,10 @@ class Library(Record, frozen=True):
         files = [text.name for text in self.closure((shader,), asker) if name in text.functions]
         return shader if shader in files or not files else files[0]
 
-    def closure(self, names: tuple[str, ...], asker: str) -> tuple[Text, ...]:
+    def closure(self, names: tuple[str, ...], asker: str) -> tuple[GlslText, ...]:
         """The files and all that they include, each once, includes first. A ShaderError names the node `asker`."""
         if names not in self._closures:
-            texts: dict[str, Text] = {}
+            texts: dict[str, GlslText] = {}
             for name in names:
                 self._include(name, asker, (), texts)
             self._closures[names] = tuple(texts.values())
@@ -164,7 +166,7 @@ class Library(Record, frozen=True):
         included_words = (words for name, words in self._find_words_by_file(shader, function, asker) if name != shader)
         return not any(_ACCESSOR.fullmatch(word) for words in included_words for word in words)
 
-    def _derive(self, added: Mapping[str, Text], key: frozenset[str]) -> Library:
+    def _derive(self, added: Mapping[str, GlslText], key: frozenset[str]) -> Library:
         """This library with texts added or replaced; `key` identifies them."""
         if key not in self._derived:
             if len(self._derived) >= MAX_DERIVED_LIBRARIES:
@@ -172,7 +174,7 @@ class Library(Record, frozen=True):
             self._derived[key] = Library(OverlaidTexts(added, self.texts))
         return self._derived[key]
 
-    def _find_text(self, name: str, asker: str) -> Text:
+    def _find_text(self, name: str, asker: str) -> GlslText:
         """A file, or a ShaderError that names who asked: what reads files does not know it."""
         if name not in self.texts:
             raise self._describe_missing_file(name, asker)
@@ -189,7 +191,7 @@ class Library(Record, frozen=True):
         fault = "there is no such file; a package brings its shaders if [tool.setuptools.package-data] in its "
         return ShaderError(asker, f"{namespace}/shaders/{inner}.glsl", 0, f"{fault}pyproject.toml names *.glsl")
 
-    def _include(self, name: str, asker: str, trail: tuple[str, ...], texts: dict[str, Text]) -> None:
+    def _include(self, name: str, asker: str, trail: tuple[str, ...], texts: dict[str, GlslText]) -> None:
         """Add a file to `texts`, after all that it includes. `trail` are the files that include it."""
         if name in texts:
             return
@@ -204,13 +206,13 @@ class Library(Record, frozen=True):
         texts[name] = text
 
 
-class OverlaidTexts(Mapping[str, Text]):
+class OverlaidTexts(Mapping[str, GlslText]):
     """Texts that hide those of the same name in another mapping, which is still read lazily."""
 
-    def __init__(self, above: Mapping[str, Text], below: Mapping[str, Text]) -> None:
+    def __init__(self, above: Mapping[str, GlslText], below: Mapping[str, GlslText]) -> None:
         self._above, self._below = above, below
 
-    def __getitem__(self, name: str) -> Text:
+    def __getitem__(self, name: str) -> GlslText:
         return self._above[name] if name in self._above else self._below[name]
 
     def __iter__(self) -> Iterator[str]:
@@ -223,7 +225,7 @@ class OverlaidTexts(Mapping[str, Text]):
         return name in self._above or name in self._below
 
 
-class ShaderFolder(Mapping[str, Text]):
+class ShaderFolder(Mapping[str, GlslText]):
     """Shader files of a folder by name; each is read when it is first used.
 
     Files of a plug-in begin with its namespace. So must their functions, because two nodes of any origin may share a
@@ -232,18 +234,18 @@ class ShaderFolder(Mapping[str, Text]):
 
     def __init__(self, folder: Path, namespace: str = "") -> None:
         self._folder, self._namespace = folder, namespace
-        self._read: dict[str, Text] = {}
+        self._read: dict[str, GlslText] = {}
 
     @cached_property
     def _files(self) -> dict[str, Path]:
         return dict(_find_files(self._folder, f"{self._namespace}/" if self._namespace else ""))
 
-    def __getitem__(self, name: str) -> Text:
+    def __getitem__(self, name: str) -> GlslText:
         if name not in self._read:
             self._read[name] = self._parse(name)
         return self._read[name]
 
-    def _parse(self, name: str) -> Text:
+    def _parse(self, name: str) -> GlslText:
         source = self._files[name].read_bytes().decode(errors="replace")
         if not self._namespace:
             return parse(name, source)
@@ -265,7 +267,7 @@ class ShaderFolder(Mapping[str, Text]):
         return name in self._files
 
 
-class InstalledTexts(Mapping[str, Text]):
+class InstalledTexts(Mapping[str, GlslText]):
     """The shader files of Halation and of plug-ins, which are only searched for names that Halation does not have."""
 
     def __init__(self) -> None:
@@ -280,7 +282,7 @@ class InstalledTexts(Mapping[str, Text]):
             if plugin.nodes and plugin.folder and (plugin.folder / "shaders").is_dir()
         }
 
-    def __getitem__(self, name: str) -> Text:
+    def __getitem__(self, name: str) -> GlslText:
         return self._own[name] if name in self._own else self._plugins[name.partition("/")[0]][name]
 
     def __iter__(self) -> Iterator[str]:

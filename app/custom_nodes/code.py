@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Literal, cast
 from halation.nodes import Node, OutputSocket, Plain, Socket, Value
 from msgspec import Struct
 
-from ..glsl import Text
+from ..glsl import GlslText
 
 Language = Literal["glsl", "isf"]
 """GLSL as the house writes it, and the Interactive Shader Format. Both are types of nodes in documents."""
@@ -50,7 +50,7 @@ class CustomNode(Node, abstract=True):
     """
 
     code: ClassVar[Code]
-    text: ClassVar[Text | None] = None
+    text: ClassVar[GlslText | None] = None
     """Its functions for the compiler's library, if they go there."""
     _settings: Mapping[str, Plain]
 

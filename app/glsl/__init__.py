@@ -11,6 +11,6 @@ divisions of whole numbers are guarded (`divisions`, `operands`). These steps wo
 
 from __future__ import annotations
 
-from .text import COMMENT, GlslFunction, Text, blank_comments, macro_name, parse, unify_lines, words
+from .text import COMMENT, GlslFunction, GlslText, blank_comments, macro_name, parse, unify_lines, words
 
-__all__ = ["COMMENT", "GlslFunction", "Text", "blank_comments", "macro_name", "parse", "unify_lines", "words"]
+__all__ = ["COMMENT", "GlslFunction", "GlslText", "blank_comments", "macro_name", "parse", "unify_lines", "words"]

@@ -37,7 +37,7 @@ class GlslFunction(Struct, frozen=True):
     """All words of its body: what it calls is among them."""
 
 
-class Text(Struct, frozen=True, dict=True):
+class GlslText(Struct, frozen=True, dict=True):
     """One GLSL file without comments and `#include` lines (their lines stay, empty, so that numbers hold).
 
     `file` is what messages call it. `includes` are the lines of what it includes, by name. `functions` are by name;
@@ -53,10 +53,10 @@ class Text(Struct, frozen=True, dict=True):
     words: frozenset[str]
 
     @cached_property
-    def _cuts(self) -> dict[frozenset[str], Text]:
+    def _cuts(self) -> dict[frozenset[str], GlslText]:
         return {}
 
-    def only(self, entries: frozenset[str]) -> Text:
+    def only(self, entries: frozenset[str]) -> GlslText:
         """The text without functions that `entries` do not need: another draw may need other accessors.
 
         Their lines stay, empty.
@@ -66,7 +66,7 @@ class Text(Struct, frozen=True, dict=True):
             self._cuts[entries] = self._only(entries)
         return self._cuts[entries]
 
-    def _only(self, entries: frozenset[str]) -> Text:
+    def _only(self, entries: frozenset[str]) -> GlslText:
         needed: set[str] = set()
         todo = [*entries, *(self.outside & self.functions.keys())]
         while todo:
@@ -125,7 +125,7 @@ def unify_lines(source: str) -> str:
     return source.replace("\r\n", "\n").replace("\r", "\n").removeprefix("\ufeff")
 
 
-def parse(name: str, source: str, file: str = "") -> Text:
+def parse(name: str, source: str, file: str = "") -> GlslText:
     """Read a shader file's functions and includes. `file` is what messages call it."""
     code = blank_comments(source)
     functions = tuple(_function(match, code) for match in _FUNCTION.finditer(code))
@@ -134,7 +134,7 @@ def parse(name: str, source: str, file: str = "") -> Text:
         match[1].removesuffix(".glsl"): code.count("\n", 0, match.start()) + 1 for match in INCLUDE.finditer(code)
     }
     words = frozenset(_WORD.findall(code))
-    return Text(
+    return GlslText(
         name,
         file or f"shaders/{name}.glsl",
         INCLUDE.sub(_blank, code),

@@ -22,6 +22,7 @@ from ..resources.picture import Picture
 from ..resources.provider import FrameFile, PictureProbe
 from ..resources.sandbox import Sandbox
 from ..resources.working_space import WorkingSpace
+from .letters import MISSING_GLYPH, find_missing_glyphs
 from .rules.paths import list_paths
 
 if TYPE_CHECKING:
@@ -57,7 +58,16 @@ BROKEN_SHADER = Rule(
     "Correct the shader.",
 )
 TOO_LARGE = Rule("too-large", "error", "A picture is larger than any device can hold.", "Make it smaller.")
-RULES = (UNREADABLE_FILE, LFS_POINTER, UNBOUND_INPUT, CANNOT_COMPILE, BAD_SETTING, BROKEN_SHADER, TOO_LARGE)
+RULES = (
+    UNREADABLE_FILE,
+    LFS_POINTER,
+    UNBOUND_INPUT,
+    CANNOT_COMPILE,
+    BAD_SETTING,
+    BROKEN_SHADER,
+    TOO_LARGE,
+    MISSING_GLYPH,
+)
 
 SIZE = (1920, 1080)
 """The size that is assumed for a missing picture."""
@@ -186,6 +196,7 @@ def problems(graph: Graph, world: NotingProvider) -> Iterator[tuple[int, Problem
     for fault in colors:
         problem = Problem(fault.node, fault.name, str(fault.error), BAD_SETTING, fault.at)
         yield fault.error.exit_code, problem
+    yield from ((0, problem) for problem in find_missing_glyphs(graph, world))
     if not graph.outputs or any(fault.node != OUTPUTS for fault in colors):
         return
     world.faults.clear()

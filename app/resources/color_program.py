@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from ..glsl import Text
+from ..glsl import GlslText
 from .record import Record
 
 
@@ -29,7 +29,7 @@ class ColorProgram(Record, frozen=True):
     """
 
     function: str
-    text: Text
+    text: GlslText
     tables: tuple[LookupTable, ...]
 
     compare_exclude: ClassVar[frozenset[str]] = frozenset({"text"})

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from msgspec import Struct
 
-from ..glsl import Text, parse
+from ..glsl import GlslText, parse
 
 _NAME = "lib/working"
 _TEXT = """
@@ -25,7 +25,7 @@ class WorkingSpace(Struct, frozen=True):
     from_rec709: tuple[float, ...]
 
     @property
-    def text(self) -> Text:
+    def text(self) -> GlslText:
         """The file of the library that says so."""
         parts = {"luminance": self.luminance, "to": self.to_rec709, "back": self.from_rec709}
         return parse(_NAME, _TEXT.format(**{name: _numbers(numbers) for name, numbers in parts.items()}))

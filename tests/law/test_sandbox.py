@@ -30,6 +30,7 @@ ENVIRONMENT = {
     "resources/library_messages.py": "what libraries are told to print",
     "resources/machine.py": "whether there is a display",
     "resources/sandbox.py": "HALATION_ROOT",
+    "resources/today.py": "SOURCE_DATE_EPOCH, the date of builds that are to be the same each time",
     "resources/user_folders.py": "HALATION_STATE and HALATION_PATH, the user's folders",
 }
 """Modules that read or change the environment, and what for. What a graph decides is never among it."""
@@ -62,6 +63,7 @@ OPENERS = {
     "media/pictures/writer.py": "the temporary file of a `Replacement`",
     "media/pictures/thumbnail.py": "pictures after `check_file`, and the temporary file of a `Replacement`",
     "media/comparison/contact_sheet.py": "the temporary file of a `Replacement`",
+    "media/lettering/fonts.py": "fonts of Halation",
     "media/meshes/load.py": "trimesh is given an open file",
     "media/video/index.py": "videos, after `check_file`",
     "media/video/writer.py": "the temporary file of a `Replacement`",

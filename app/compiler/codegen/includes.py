@@ -10,7 +10,7 @@ each, with macros that give its functions and accessors a prefix.
 
 from __future__ import annotations
 
-from ...glsl import Text, macro_name, words
+from ...glsl import GlslText, macro_name, words
 from ..library import PASS_UNIFORMS, Lines
 from ..plan import LINES_PER_FILE
 from .pass_parts import InlinedGather, PassContext, PassParts
@@ -35,9 +35,9 @@ def include_files(context: PassContext, parts: PassParts) -> Lines:
     return context.library.remember_lines(key, lambda: _find_lines(context, parts))
 
 
-def select_texts(context: PassContext, parts: PassParts) -> tuple[Text, ...]:
+def select_texts(context: PassContext, parts: PassParts) -> tuple[GlslText, ...]:
     """The shader files of a pass, includes first, with only the functions that it needs."""
-    selected: list[Text] = []
+    selected: list[GlslText] = []
     needed = words(*parts.functions, *parts.body, *parts.results)
     inlined_words = frozenset[str]().union(*(gather.text.words for gather in parts.inlined))
     inlined_files = {gather.text.name for gather in parts.inlined}
@@ -52,16 +52,16 @@ def select_texts(context: PassContext, parts: PassParts) -> tuple[Text, ...]:
     return tuple(reversed(selected))
 
 
-def split_by_accessors(texts: tuple[Text, ...], parts: PassParts) -> tuple[list[Text], list[Text]]:
+def split_by_accessors(texts: tuple[GlslText, ...], parts: PassParts) -> tuple[list[GlslText], list[GlslText]]:
     """The files that come before the functions of a pass, and those that read through its accessors and follow them."""
-    early, late = list[Text](), list[Text]()
+    early, late = list[GlslText](), list[GlslText]()
     for text in texts:
         reads = text.words & parts.accessors.union(*(item.functions for item in late))
         (late if reads else early).append(text)
     return early, late
 
 
-def find_macros(text: Text, context: PassContext) -> list[tuple[str, int]]:
+def find_macros(text: GlslText, context: PassContext) -> list[tuple[str, int]]:
     """The macros of a node's choices that its file uses, and their numbers."""
     choices = next((op.choices for op in context.functions if op.shader == text.name), ())
     macros = ((macro_name(name, choice), number) for name, names in choices for number, choice in enumerate(names))
@@ -87,7 +87,7 @@ def _include_inlined(gather: InlinedGather, files: list[str], context: PassConte
     ]
 
 
-def _include(text: Text, files: list[str], context: PassContext) -> list[str]:
+def _include(text: GlslText, files: list[str], context: PassContext) -> list[str]:
     """A shader file, with the macros of its node's choices around it and its own line numbers."""
     macros = find_macros(text, context)
     files.append(text.file)

@@ -8,7 +8,7 @@ from functools import singledispatch
 from halation.nodes import glsl_type
 from msgspec import Struct, structs
 
-from ...glsl import Text
+from ...glsl import GlslText
 from ..fusion.fuse import PassGroup
 from ..ir import EDGES, Accessor, Call, Convolve, FunctionOp, Gather, LoweredProgram, Op, Reduce, Ref
 from ..library import Library
@@ -49,7 +49,7 @@ class InlinedGather(Struct, frozen=True):
     """A gather inside a pass of pointwise operations: the part of its file that it needs, with a prefix for names."""
 
     op: Gather
-    text: Text
+    text: GlslText
     prefix: str
 
     @property

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from halation.nodes import Uniform
 from msgspec import field
 
-from ...glsl import Text, words
+from ...glsl import GlslText, words
 from ..codegen.includes import find_macros, select_texts, split_by_accessors
 from ..codegen.names import ShaderNames, convert
 from ..codegen.pass_parts import PassContext, PassParts, write_parts
@@ -142,7 +142,7 @@ def write_function(
 
 
 def _write_functions(
-    context: PassContext, texts: tuple[Text, ...], parts: PassParts, functions: list[str]
+    context: PassContext, texts: tuple[GlslText, ...], parts: PassParts, functions: list[str]
 ) -> Iterator[str]:
     early, late = split_by_accessors(texts, parts)
     for group in (early, None, late):
@@ -171,7 +171,7 @@ def _make_portable(body: str) -> str:
     )
 
 
-def _prefix_names(text: str, prefix: str, names: IsfNames, texts: tuple[Text, ...]) -> str:
+def _prefix_names(text: str, prefix: str, names: IsfNames, texts: tuple[GlslText, ...]) -> str:
     """Every global name gets the prefix of the pass: two passes may define the same. What is marked with @ stays."""
     own = {name for match in _DEFINED.finditer(text) for name in match.groups() if name}
     own |= {name for match in _CONSTANTS.finditer(text) for name in _CONSTANT.findall(match[1])}

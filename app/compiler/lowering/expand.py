@@ -11,7 +11,7 @@ from msgspec import Struct, field
 
 from ...custom_nodes import CustomNode
 from ...errors import GraphError
-from ...glsl import Text
+from ...glsl import GlslText
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Input, Port, Unknown, conversion
 from ...graph.names import pick
 
@@ -199,7 +199,7 @@ def _mute(flat: FlatGraph, prefix: str, body: Graph) -> None:
             flat.inputs[port] = Input(end.kind, end.width, default=make_zero(end.socket(name)))
 
 
-def find_custom_texts(graph: Graph) -> Iterator[Text]:
+def find_custom_texts(graph: Graph) -> Iterator[GlslText]:
     """The code of the nodes that users wrote, groups included."""
     for item in graph.nodes.values():
         if isinstance(item, Group):

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from ...color.gpu_programs import list_table_endings
 from ...graph.frames import VIDEO_ENDINGS
+from ...media.lettering import FONT_ENDINGS
 from ...media.meshes.load import MESH_ENDINGS
 from ...media.pictures.file_endings import list_readable_endings
 from ..shared.dialogs import Browse
@@ -158,6 +159,8 @@ def endings(browse: Browse) -> frozenset[str]:
         return list_table_endings()
     if browse.purpose == "scene":
         return MESH_ENDINGS
+    if browse.purpose == "font":
+        return FONT_ENDINGS
     if browse.purpose == "config":
         return frozenset({".ocio", ".ocioz"})
     return frozenset({".json" if browse.purpose == "graph" else Path(browse.name).suffix.lower() or ".exr"})

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Iterator
 from functools import lru_cache
@@ -16,8 +15,8 @@ from msgspec import Struct
 from ...errors import InputError
 from ...resources.input_files import check_file, find_similar_name, fingerprint, read_bytes
 from ...resources.sandbox import Sandbox
+from . import FONT_ENDINGS
 
-FONT_ENDINGS = frozenset({".ttf", ".otf", ".ttc", ".otc"})
 FONTS = Path(__file__).parent / "fonts"
 PACKED = {"dejavu sans": ("DejaVuSans.ttf", "DejaVuSans-Bold.ttf"), "dejavu sans mono": ("DejaVuSansMono.ttf",)}
 """The families of the package, with their files by weight."""
@@ -118,7 +117,7 @@ def _list_folders() -> Iterator[str]:
     """Where systems keep fonts."""
     home = Path.home()
     if sys.platform == "win32":
-        yield str(Path(os.environ.get("WINDIR", r"C:\Windows")) / "Fonts")
+        yield r"C:\Windows\Fonts"
     elif sys.platform == "darwin":
         yield from ("/System/Library/Fonts", "/Library/Fonts", str(home / "Library" / "Fonts"))
     else:

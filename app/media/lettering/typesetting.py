@@ -22,7 +22,7 @@ _SLACK = 1e-6
 """How much in em a line may be wider than its box: rounding."""
 
 
-class _Line(Struct, frozen=True):
+class _TextLine(Struct, frozen=True):
     """The glyphs of a line from left to right, and how far they reach."""
 
     glyphs: tuple[ShapedGlyph, ...]
@@ -38,7 +38,7 @@ def typeset(block: TextBlock, sandbox: Sandbox) -> TypesetText:
 
 @lru_cache(maxsize=64)
 def _typeset(block: TextBlock, font: LoadedFont) -> TypesetText:
-    lines, missing = list[_Line](), list[str]()
+    lines, missing = list[_TextLine](), list[str]()
     text = block.text.replace("\r\n", "\n").replace("\r", "\n").replace("\t", "    ")
     for paragraph in text.split("\n"):
         clean = "".join(letter for letter in paragraph if category(letter) not in ("Cc", "Cs"))
@@ -56,7 +56,7 @@ def _typeset(block: TextBlock, font: LoadedFont) -> TypesetText:
 
 
 def _place_lines(
-    lines: Sequence[_Line], block: TextBlock, font: LoadedFont, width: float, ascent: float
+    lines: Sequence[_TextLine], block: TextBlock, font: LoadedFont, width: float, ascent: float
 ) -> tuple[tuple[GlyphPlace, ...], tuple[tuple[Contour, ...], ...]]:
     """The places of all glyphs that can be seen, and the outlines that they share."""
     numbers, places, outlines, curve_count = dict[int, int](), list[GlyphPlace](), list[tuple[Contour, ...]](), 0
@@ -77,7 +77,7 @@ def _place_lines(
     return tuple(places), tuple(outlines)
 
 
-def _set_paragraph(paragraph: str, block: TextBlock, font: LoadedFont) -> Iterator[_Line]:
+def _set_paragraph(paragraph: str, block: TextBlock, font: LoadedFont) -> Iterator[_TextLine]:
     """The lines of a paragraph. Where it breaks is decided by the widths of letters in the whole paragraph."""
     _, levels = find_levels(paragraph, block.direction)
     ends = [len(paragraph)]
@@ -92,7 +92,7 @@ def _set_paragraph(paragraph: str, block: TextBlock, font: LoadedFont) -> Iterat
             for glyph in shape_run(paragraph[:seen_end], run, font, block.tracking)
         ]
         width = sum(glyph.advance for glyph in glyphs) - (block.tracking if glyphs else 0.0)
-        yield _Line(tuple(glyphs), width)
+        yield _TextLine(tuple(glyphs), width)
         start = end
 
 
