@@ -1,16 +1,18 @@
 """Which tests run: all but those of the night, only fast ones, those of what has changed, or also those of the night.
 
 `--fast` leaves out the rooms that start programs and the tests that `slow_tests.txt` lists; with `HALATION_RENEW=1`,
-`--costs` writes that list anew. `--nightly` repeats more often what kills or draws at random.
+`--costs` writes that list anew. `--nightly` repeats more often what kills or draws at random, and runs the cases that are
+marked `nightly`.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pytest
+from _pytest.mark import ParameterSet
 from changes import covers, list_changes
 
 TESTS = Path(__file__).parent
@@ -34,6 +36,16 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption("--nightly", action="store_true", help="repeat more often what happens at random")
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    """The mark of cases for the night."""
+    config.addinivalue_line("markers", "nightly: run with --nightly only")
+
+
+def list_seeds(daily: int, nightly: int) -> list[ParameterSet]:
+    """Seeds from 0: `daily` ones for each run, and more up to `nightly` for the night."""
+    return [pytest.param(seed, marks=() if seed < daily else pytest.mark.nightly) for seed in range(nightly)]
+
+
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
     """Do not even import the rooms that `--fast` leaves out."""
     is_slow = collection_path.is_relative_to(TESTS) and collection_path.relative_to(TESTS).parts[:1] in _FIRST_PARTS
@@ -43,12 +55,18 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave out what is slow."""
+    """Leave out what is slow, and what is for the night."""
+    if not config.getoption("--nightly"):
+        _leave_out(config, items, lambda item: item.get_closest_marker("nightly") is not None)
     if config.getoption("--fast"):
         slow = set(LIST.read_text("utf-8").split("\n"))
-        left_out = [item for item in items if name_function(item.nodeid) in slow]
-        items[:] = [item for item in items if name_function(item.nodeid) not in slow]
-        config.hook.pytest_deselected(items=left_out)
+        _leave_out(config, items, lambda item: name_function(item.nodeid) in slow)
+
+
+def _leave_out(config: pytest.Config, items: list[pytest.Item], is_left_out: Callable[[pytest.Item], bool]) -> None:
+    left_out = [item for item in items if is_left_out(item)]
+    items[:] = [item for item in items if not is_left_out(item)]
+    config.hook.pytest_deselected(items=left_out)
 
 
 @pytest.fixture(scope="session")

@@ -1,20 +1,39 @@
-"""Every value of a pointwise node can be linked: the same as setting it, and finite whatever arrives."""
+"""Every value of a pointwise node can be linked: the same as setting it, and finite whatever arrives.
+
+Each value is linked alone with the default choices, and all values together with every other choice.
+"""
 
 from __future__ import annotations
 
 import zlib
+from collections.abc import Iterator
 
 import numpy as np
 import pytest
+from _pytest.mark import ParameterSet
 from halation.nodes import Kind, Node, Pointwise, Value, catalogue
 
 NODES = [node for node in catalogue().values() if issubclass(node, Pointwise)]
-CASES = [
-    pytest.param(node, value, id=f"{node.id}.{value.name}")
-    for node in NODES
-    for value in node.values.values()
-    if value.wireable
-]
+
+
+def choose(node: type[Node]) -> list[dict[str, str]]:
+    """The default choices, then every other choice of every value, one at a time."""
+    choices = [(value.name, choice) for value in node.values.values() for choice in value.choices]
+    return [{}, *({name: choice} for name, choice in choices if choice != node.values[name].default)]
+
+
+def list_cases() -> Iterator[ParameterSet]:
+    """A node, its choices, and the values that are linked."""
+    for node in NODES:
+        values = [value for value in node.values.values() if value.wireable]
+        default, *others = choose(node)
+        for value in values:
+            yield pytest.param(node, default, [value], id=f"{node.id}.{value.name}")
+        for choices in others if values else ():
+            yield pytest.param(node, choices, values, id=f"{node.id}-{'-'.join(choices.values())}")
+
+
+CASES = [*list_cases()]
 HEIGHT, WIDTH = 9, 14
 
 
@@ -46,32 +65,26 @@ def linked(value: Value, setting: float | int | bool | tuple[float, ...]) -> np.
     return np.broadcast_to(np.float32(setting), (HEIGHT, WIDTH, value.length)).copy()
 
 
-@pytest.mark.parametrize(("node", "value"), CASES)
-def test_linked_value_is_the_set_value(run, node, value):
-    setting = another(value)
-    for choices in variants(node):
-        for output in node.outputs:
-            fixed = node(**choices, **{value.name: setting})
-            expected = run(fixed, inputs_of(node), size=(WIDTH, HEIGHT), output=output)
-            out = run(
-                node(**choices),
-                inputs_of(node) | {value.name: linked(value, setting)},
-                size=(WIDTH, HEIGHT),
-                output=output,
-            )
-            assert np.abs(out - expected).max() <= 1e-5 * max(1.0, np.abs(expected).max()), choices
+@pytest.mark.parametrize(("node", "choices", "values"), CASES)
+def test_linked_values_are_the_set_values(run, node, choices, values):
+    settings = {value.name: another(value) for value in values}
+    pictures = {value.name: linked(value, settings[value.name]) for value in values}
+    for output in node.outputs:
+        expected = run(node(**choices, **settings), inputs_of(node), size=(WIDTH, HEIGHT), output=output)
+        out = run(node(**choices), inputs_of(node) | pictures, size=(WIDTH, HEIGHT), output=output)
+        assert np.abs(out - expected).max() <= 1e-5 * max(1.0, np.abs(expected).max())
 
 
-@pytest.mark.parametrize(("node", "value"), CASES)
-def test_whatever_is_linked_the_picture_is_finite(run, node, value):
-    rough = np.resize(
-        np.array([np.nan, np.inf, -np.inf, 0.0, -0.0, -1.0, 1e30, -1e30, 1e-30, 0.5, 2.0], np.float32),
-        (HEIGHT, WIDTH, value.length),
-    ).copy()
-    for choices in variants(node):
-        for output in node.outputs:
-            out = run(node(**choices), inputs_of(node) | {value.name: rough}, size=(WIDTH, HEIGHT), output=output)
-            assert np.isfinite(out).all(), choices
+@pytest.mark.parametrize(("node", "choices", "values"), CASES)
+def test_whatever_is_linked_the_picture_is_finite(run, node, choices, values):
+    rough = np.array([np.nan, np.inf, -np.inf, 0.0, -0.0, -1.0, 1e30, -1e30, 1e-30, 0.5, 2.0], np.float32)
+    pictures = {
+        value.name: np.resize(np.roll(rough, 3 * number), (HEIGHT, WIDTH, value.length)).copy()
+        for number, value in enumerate(values)
+    }
+    for output in node.outputs:
+        out = run(node(**choices), inputs_of(node) | pictures, size=(WIDTH, HEIGHT), output=output)
+        assert np.isfinite(out).all()
 
 
 @pytest.mark.parametrize("node", NODES, ids=lambda node: node.id)
@@ -81,13 +94,7 @@ def test_whatever_the_picture_holds_the_result_is_finite(run, node):
     for number, (name, socket) in enumerate(node.inputs.items()):
         inputs[name] = np.resize(np.roll(rough, number), (*inputs[name].shape[:2], socket.channels)).copy()
     changed = {value.name: another(value) for value in node.values.values() if value.wireable}
-    for choices in variants(node):
-        made = node(**changed, **choices)
-        for output in node.outputs if made.identity() is None else ():  # a neutral node is not there at all
-            assert np.isfinite(run(made, inputs, size=(WIDTH, HEIGHT), output=output)).all(), choices
-
-
-def variants(node: type[Node]) -> list[dict[str, str]]:
-    """Every choice of every value of the node, one at a time."""
-    found = [{value.name: choice} for value in node.values.values() for choice in value.choices]
-    return found or [{}]
+    for choices in choose(node):
+        specimen = node(**changed, **choices)
+        for output in node.outputs if specimen.identity() is None else ():  # a neutral node is not there at all
+            assert np.isfinite(run(specimen, inputs, size=(WIDTH, HEIGHT), output=output)).all(), choices
