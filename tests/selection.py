@@ -1,8 +1,8 @@
 """Which tests run: all but those of the night, only fast ones, those of what has changed, or also those of the night.
 
 `--fast` leaves out the rooms that start programs and the tests that `slow_tests.txt` lists; with `HALATION_RENEW=1`,
-`--costs` writes that list anew. `--nightly` repeats more often what kills or draws at random, and runs the cases that are
-marked `nightly`.
+`--costs` writes that list anew. `--nightly` repeats more often what kills or draws at random, and runs the cases that
+are marked `nightly`.
 """
 
 from __future__ import annotations
