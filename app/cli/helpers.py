@@ -50,15 +50,10 @@ def run_helpers(
 
 def join_reports(reports: Sequence[dict[str, Any]]) -> dict[str, Any]:
     """One report from those of several processes. Each has textures of its own, so their bytes are added."""
-    total = dict(reports[0])
+    total = join_costs(reports)
     for report in reports[1:]:
         for name in ("written", "frames", "kept"):
             total[name] = [*total[name], *report[name]]
-        for name in ("passes", "programs", "peak_bytes"):
-            total[name] += report[name]
-        for name in ("repaired", "warnings", "views"):
-            total[name] = {**total[name], **report[name]}
-        total["seconds"] = {name: max(seconds, report["seconds"][name]) for name, seconds in total["seconds"].items()}
     if len(reports) == 1:
         return total
     order = sorted(range(len(total["frames"])), key=lambda place: total["frames"][place])
@@ -67,6 +62,18 @@ def join_reports(reports: Sequence[dict[str, Any]]) -> dict[str, Any]:
         path for place in order for path in total["written"][place * files_per_frame : (place + 1) * files_per_frame]
     ]
     return {**total, "frames": sorted(total["frames"]), "kept": sorted(total["kept"])}
+
+
+def join_costs(reports: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """What several processes have in their reports of costs, as one, with all else of the first."""
+    total = dict(reports[0])
+    for report in reports[1:]:
+        for name in ("passes", "programs", "peak_bytes"):
+            total[name] += report[name]
+        for name in ("repaired", "warnings", "views"):
+            total[name] = {**total[name], **report[name]}
+        total["seconds"] = {name: max(seconds, report["seconds"][name]) for name, seconds in total["seconds"].items()}
+    return total
 
 
 class _Helper:

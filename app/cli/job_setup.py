@@ -20,6 +20,13 @@ if TYPE_CHECKING:
 
 def open_job_renderer(job: RenderJob, graph: Graph, prefetcher: Prefetcher | None = None) -> Renderer:
     """Open the device of a job and print its description. Raises DeviceError."""
+    renderer = open_renderer(job, graph, prefetcher)
+    print_note(renderer.device.description)
+    return renderer
+
+
+def open_renderer(job: RenderJob, graph: Graph, prefetcher: Prefetcher | None = None) -> Renderer:
+    """Open the device of a job. Raises DeviceError."""
     from ..renderer import DEFAULT_BUDGET, Renderer, open_device, open_pinned
 
     device = (
@@ -29,11 +36,9 @@ def open_job_renderer(job: RenderJob, graph: Graph, prefetcher: Prefetcher | Non
     )
     # Without pre-roll a frame needs the one before it at most; with pre-roll it needs more, so results are kept.
     leads_up = len(job.frames) != 1 and graph.settings.preroll is not None
-    renderer = Renderer(
+    return Renderer(
         device, budget=DEFAULT_BUDGET if leads_up and not job.memory else 0, prefetcher=prefetcher, sandbox=job.sandbox
     )
-    print_note(renderer.device.description)
-    return renderer
 
 
 def make_request(job: RenderJob, inputs: Mapping[str, str], targets: Mapping[str, Port]) -> RenderRequest:

@@ -79,6 +79,16 @@ Memory = Annotated[
         metavar="SIZE", help="Memory that one frame may use, such as 512M or 2G; a larger frame is rendered in tiles."
     ),
 ]
+Cluster = Annotated[
+    str,
+    typer.Option(
+        "--cluster", metavar="ADDRESS", help="Share the work among the workers of a Dask scheduler, or of local:4."
+    ),
+]
+PathMaps = Annotated[
+    list[str] | None,
+    typer.Option("--map", metavar="FROM=TO", help="Where workers have a folder that has another path there."),
+]
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object to standard output, for scripts.")]
 Root = Annotated[
     Path | None,

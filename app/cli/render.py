@@ -13,6 +13,7 @@ from . import parsing
 from .execute import execute
 from .options import (
     AsJson,
+    Cluster,
     Form,
     Frames,
     GraphFile,
@@ -21,6 +22,7 @@ from .options import (
     Node,
     OneFrame,
     Outputs,
+    PathMaps,
     Precision,
     Scale,
     Sets,
@@ -62,6 +64,11 @@ def render(
             "-j", "--jobs", min=1, help="Share the frames among this many processes, if each frame is independent."
         ),
     ] = 1,
+    cluster: Cluster = "",
+    path_map: PathMaps = None,
+    priority: Annotated[
+        int, typer.Option("--priority", help="Frames of jobs with a higher number go first on a cluster.")
+    ] = 0,
     precision: Precision = None,
     memory: Memory = None,
     view: View = "",
@@ -162,4 +169,12 @@ def render(
         timeout=timeout,
         sandbox=sandbox,
     )
-    return execute(job, parsing.parse_progress(progress), as_json)
+    if not cluster:
+        if path_map or priority:
+            raise UsageError("--map and --priority are for a cluster: write --cluster ADDRESS too")
+        return execute(job, parsing.parse_progress(progress), as_json)
+    from ..cluster.path_map import parse_path_map
+    from .execute_cluster import ClusterOptions, execute_on_cluster
+
+    options = ClusterOptions(cluster, parse_path_map(path_map or ()), priority)
+    return execute_on_cluster(job, options, parsing.parse_progress(progress), as_json)

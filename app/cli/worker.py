@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from itertools import count
+from typing import Annotated
+
+import typer
 
 from .execute import execute, open_job_graph
 from .execute_batch import render_entries
@@ -13,7 +16,12 @@ from .signals import end_with_parent
 from .watchdog import end_with_watchdog
 
 
-def worker(as_json: AsJson = True) -> int:
+def worker(
+    as_json: AsJson = True,
+    chunks: Annotated[
+        bool, typer.Option("--chunks", help="Read chunks of frames instead, one per line, and render each.")
+    ] = False,
+) -> int:
     """Run the render job that is read as JSON from standard input, and report in JSON."""
     from msgspec.structs import replace
 
@@ -21,6 +29,10 @@ def worker(as_json: AsJson = True) -> int:
     from ..resources.sandbox import read_process_sandbox
 
     end_with_parent()
+    if chunks:
+        from .chunk_worker import render_chunks
+
+        return render_chunks()
     end_with_watchdog()
     job = RenderJob.from_json(read_standard_input())
     if job.sandbox.root:

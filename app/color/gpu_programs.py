@@ -21,6 +21,10 @@ from .display import make_display_processor
 from .management import ColorManager, OcioColorSpace, describe_ocio_error, get_color_manager, load_ocio, ocio_errors
 
 
+_UNNAMED = "recolor_unnamed"
+"""The name of a program until its content is known."""
+
+
 def write_color_change(change: ColorChange, sandbox: Sandbox) -> ColorProgram:
     """The program of a change of color.
 
@@ -73,13 +77,27 @@ def write_view_program(
 
 @lru_cache(maxsize=64)
 def _write_color_change(change: ColorChange, mark: str, sandbox: Sandbox) -> ColorProgram:
-    name = f"recolor_{blake2b(f'{change} {mark}'.encode('utf-8', 'surrogateescape'), digest_size=8).hexdigest()}"
-    return write_color_program(
+    program = write_color_program(
         _make_file_processor(change, sandbox)
         if isinstance(change, LookupFile)
         else _make_space_processor(change, get_color_manager(change.color, sandbox)),
-        name,
+        _UNNAMED,
     )
+    return _name_by_content(program)
+
+
+def _name_by_content(program: ColorProgram) -> ColorProgram:
+    """The program under a name that tells it from all others, wherever its file lies and whenever it was written.
+
+    Programs are part of what the key of a picture is made from.
+    """
+    digest = blake2b(program.text.body.encode(), digest_size=8)
+    for table in program.tables:
+        values = np.asarray(table.values)
+        digest.update(f"{table.linear} {values.shape}".encode() + values.tobytes())
+    name = f"recolor_{digest.hexdigest()}"
+    tables = tuple(LookupTable(table.sampler.replace(_UNNAMED, name), table.linear, table.values) for table in program.tables)
+    return ColorProgram(name, parse(f"OpenColorIO/{name}", program.text.body.replace(_UNNAMED, name)), tables)
 
 
 def _make_space_processor(change: SpaceChange, manager: ColorManager) -> Any:

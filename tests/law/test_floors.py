@@ -18,8 +18,8 @@ DATA = ("nodes", "shaders", "presets")
 
 FLOORS = (
     "errors", "version", "glsl", "resources", "custom_nodes", "graph", "document", "compiler", "color", "media",
-    "render_layers", "inputs", "lint", "renderer", "scripting", "__init__", "serving", "watch", "regression", "export",
-    "authoring", "editor", "cli",
+    "render_layers", "inputs", "lint", "renderer", "scripting", "__init__", "serving", "cluster", "watch", "regression",
+    "export", "authoring", "editor", "cli",
 )  # fmt: skip
 """Parts of the machine from the ground up. `__init__` is the public face of the engine: it stands on the renderer."""
 
@@ -38,6 +38,7 @@ HOMES = {
     "av": "media",
     "uharfbuzz": "media",
     "bidi": "media",
+    "distributed": "cluster",
     "pyoidn": "media",
     "glfw": "editor",
     "imgui_bundle": "editor",
@@ -168,7 +169,7 @@ def test_no_module_is_part_of_a_cycle() -> None:
 def test_every_library_is_declared() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     extras = project["optional-dependencies"]
-    listed = [*project["dependencies"], *extras["video"], *extras["denoise"]]
+    listed = [*project["dependencies"], *extras["video"], *extras["denoise"], *extras["cluster"]]
     declared = {re.split(r"[^\w-]", line)[0].lower() for line in listed}
     providers = packages_distributions()
     ours = {"halation"}

@@ -47,6 +47,8 @@ class JobItem(Struct, frozen=True):
     frames: tuple[int, ...]
     creates_folders: bool = False
     """True if folders that its files go into are created."""
+    graph_text: str = ""
+    """The text of the graph in headers, where `graph` has paths of another machine; "" for that of `graph`."""
 
 
 class FrameTask(Struct, frozen=True):

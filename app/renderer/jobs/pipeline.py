@@ -86,7 +86,8 @@ class FramePipeline:
         for name, open_item in self._items:
             try:
                 item = open_item()
-                session = ItemSession(self._renderer, item, self._dump_graph(item.graph), self._hashes, self._resume)
+                graph_text = item.graph_text or self._dump_graph(item.graph)
+                session = ItemSession(self._renderer, item, graph_text, self._hashes, self._resume)
             except HalationError as fault:
                 self._report_item(ItemReport(name, (), fault=fault))
                 continue

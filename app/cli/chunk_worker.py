@@ -1,0 +1,228 @@
+"""Renders chunks of frames for a worker of a cluster: each is a line of JSON, and so is the answer for each frame.
+
+The device, its programs, and the last graph stay from chunk to chunk. All chunks of one process have the same device
+settings: the worker starts another process for others.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import os
+import select
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from msgspec.structs import replace
+
+from ..cluster.chunk import FrameChunk
+from ..cluster.path_map import PathMap
+from ..cluster.render_process import IDLE_SECONDS
+from ..cluster.versions import describe_versions, find_version_fault
+from ..errors import DeviceError, GraphError, HalationError, InputError, UsageError
+from ..graph.paths import change_paths, resolve_path
+from ..resources.input_files import content_hash, fingerprint
+from ..resources.sandbox import read_process_sandbox
+from . import parsing
+from .job_setup import describe_costs, make_output_settings, make_request, open_renderer
+from .outcome import INTERRUPTED, describe_fault
+
+if TYPE_CHECKING:
+    from ..graph import Graph
+    from ..renderer import Renderer
+    from ..renderer.jobs.item_session import JobItem
+    from ..renderer.jobs.render_job import RenderJob
+    from ..renderer.jobs.reports import FrameReport, ItemReport
+    from ..resources.sandbox import Sandbox
+
+_POINTLESS = (UsageError, GraphError)
+"""Errors that all frames of a job have alike."""
+
+
+def render_chunks() -> int:
+    """Render the chunks that are read from standard input until it ends, or none comes for some time."""
+    _load_modules()
+    with tempfile.TemporaryDirectory(prefix="halation-") as folder:
+        renderer = ChunkRenderer(Path(folder), _write_line)
+        try:
+            for line in _read_lines():
+                renderer.render(FrameChunk.from_json(line))
+        except KeyboardInterrupt:  # the job is cancelled, and who cancels it says so
+            return INTERRUPTED
+    return 0
+
+
+def _load_modules() -> None:
+    """Import what every chunk needs, while the first one is still on its way."""
+    for name in ("document", "renderer.jobs.job", "renderer.opengl.device", "media"):
+        import_module(f"..{name}", __package__)
+
+
+def _read_lines() -> Iterator[str]:
+    while sys.platform == "win32" or select.select([sys.stdin.buffer], [], [], IDLE_SECONDS)[0]:
+        line = sys.stdin.buffer.readline()
+        if not line:
+            return
+        yield line.decode("utf-8")
+
+
+def _write_line(facts: Mapping[str, Any]) -> None:
+    print(json.dumps(facts), flush=True)
+
+
+class ChunkRenderer:
+    """Renders chunks with one device. `folder` is for small files that travel with chunks; `write_line` answers."""
+
+    def __init__(self, folder: Path, write_line: Callable[[Mapping[str, Any]], None]) -> None:
+        self._folder, self._write_line = folder, write_line
+        self._renderer: Renderer | None = None
+        self._last_graph: tuple[tuple[str, str], Graph] | None = None
+        self._hashes: dict[str, str] = {}
+
+    def render(self, chunk: FrameChunk) -> None:
+        """Render a chunk and answer: a line for each frame, then one for all, or one that this machine cannot."""
+        paths = PathMap(chunk.path_map)
+        try:
+            chunk = replace(chunk, job=self._localize_job(chunk.job, paths))
+            graph = self._open_graph(chunk, paths)
+            if fault := find_version_fault(describe_versions(graph), chunk.versions):
+                self._write_line({"refusal": fault})
+                return
+            renderer = self._open_renderer(chunk.job, graph)
+        except DeviceError as fault:
+            self._write_line({"refusal": f"it cannot render: {fault}"})
+            return
+        except HalationError as fault:
+            self._write_line({"faults": dict.fromkeys(chunk.job.frames, describe_fault(fault)), "costs": {}})
+            return
+        self._render_frames(chunk, graph, renderer, paths)
+
+    def _render_frames(self, chunk: FrameChunk, graph: Graph, renderer: Renderer, paths: PathMap) -> None:
+        """Render the frames together, and after an error those that are missing one by one, to find the faulty ones."""
+        waiting, faults, costs = chunk.job.frames, dict[int, Mapping[str, Any]](), dict[str, Any]()
+        try:
+            self._check_files(chunk, paths)
+            local_graph = self._locate_files(chunk, graph, paths)
+        except HalationError as fault:
+            faults = dict.fromkeys(waiting, describe_fault(fault))
+            waiting = ()
+        pieces: list[tuple[int, ...]] = [waiting] if waiting else []
+        while pieces:
+            frames = pieces.pop(0)
+            item = self._make_item(chunk, local_graph, frames)
+            finished, fault, costs = self._run(renderer, item, chunk)
+            missing = [frame for frame in frames if frame not in finished]
+            if fault is None:
+                continue
+            if len(missing) == 1 or chunk.is_chain or isinstance(fault, _POINTLESS):
+                faults |= dict.fromkeys(missing, describe_fault(fault))
+            else:
+                pieces += [(frame,) for frame in missing]
+        self._write_line({"faults": faults, "costs": costs})
+
+    def _run(
+        self, renderer: Renderer, item: JobItem, chunk: FrameChunk
+    ) -> tuple[set[int], HalationError | None, dict[str, Any]]:
+        """Render an item: the frames that are finished, the error if there is one, and what it took."""
+        from ..renderer.jobs.job import run_batch
+
+        reports: list[ItemReport] = []
+        progress = _FrameLines(self._write_line)
+        report = run_batch(renderer, [("", lambda: item)], reports.append, resume=chunk.job.resume, progress=progress)
+        costs = describe_costs(report, renderer.device.description)
+        costs["seconds"] = {name: round(part, 4) for name, part in report.seconds.items()}
+        frames = {frame.frame for frame in report.frames}
+        return frames, reports[0].fault, costs
+
+    # --- what the machine has ----------------------------------------------------------------------------------------
+
+    def _open_graph(self, chunk: FrameChunk, paths: PathMap) -> Graph:
+        """The graph of a chunk, which is read only if it is another one than that of the chunk before."""
+        from ..document import loads
+
+        key = (chunk.job.document, paths.locate(chunk.folder))
+        if self._last_graph is None or self._last_graph[0] != key:
+            self._last_graph = key, loads(*key[:1], "-", key[1], sandbox=chunk.job.sandbox)
+        return self._last_graph[1]
+
+    def _open_renderer(self, job: RenderJob, graph: Graph) -> Renderer:
+        if self._renderer is None:
+            self._renderer = open_renderer(job, graph)
+        return self._renderer
+
+    def _localize_job(self, job: RenderJob, paths: PathMap) -> RenderJob:
+        """The job with paths of this machine, in the sandbox of this process."""
+        sandbox: Sandbox = read_process_sandbox()
+        return replace(
+            job,
+            inputs={name: paths.locate(file) for name, file in job.inputs.items()},
+            destinations=tuple((name, paths.locate(file)) for name, file in job.destinations),
+            sandbox=sandbox.narrow(paths.locate(job.sandbox.root)) if job.sandbox.root else sandbox,
+        )
+
+    def _check_files(self, chunk: FrameChunk, paths: PathMap) -> None:
+        """Raise InputError for a file that is not the one that the job was sent with."""
+        for path, mark in chunk.marks.items():
+            if path in chunk.contents:
+                continue
+            file = paths.locate(path)
+            version = fingerprint(file, chunk.job.sandbox)
+            size = Path(file).stat().st_size
+            if size == mark.size and version not in self._hashes:
+                self._hashes[version] = content_hash(file, chunk.job.sandbox)
+            digest = self._hashes[version] if size == mark.size else ""
+            if digest != mark.digest:
+                facts = f"SHA-256 {digest[:12]}, not {mark.digest[:12]}" if digest else f"{size} bytes, not {mark.size}"
+                raise InputError(
+                    f"{file}: is another file than on the machine that sent the job (it has {facts}): copy it here, or "
+                    "name its folder with --map"
+                )
+
+    def _locate_files(self, chunk: FrameChunk, graph: Graph, paths: PathMap) -> Graph:
+        """The graph with the paths that files have on this machine, and with those that have travelled."""
+
+        def locate(text: str) -> str:
+            path = str(resolve_path(text, chunk.folder))
+            if path in chunk.contents:
+                return str(self._store_content(chunk, path))
+            located = paths.locate(path)
+            return text if located == str(resolve_path(text, graph.folder)) else located
+
+        return change_paths(graph, locate) if chunk.path_map or chunk.contents else graph
+
+    def _store_content(self, chunk: FrameChunk, path: str) -> Path:
+        """A file that has travelled with a chunk, under its own name."""
+        file = self._folder / chunk.marks[path].digest / os.path.basename(path)  # noqa: PTH119 - of another system
+        if not file.is_file():
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_bytes(base64.b64decode(chunk.contents[path]))
+        return file
+
+    def _make_item(self, chunk: FrameChunk, graph: Graph, frames: Sequence[int]) -> JobItem:
+        from ..renderer.jobs.item_session import JobItem
+
+        job = chunk.job
+        targets = parsing.find_targets(graph, job.node)
+        request, settings = make_request(job, job.inputs, targets), make_output_settings(job, job.files)
+        return JobItem("", graph, request, settings, tuple(frames), graph_text=job.document)
+
+
+class _FrameLines:
+    """Writes a line for each finished frame, with the seconds since the one before."""
+
+    def __init__(self, write_line: Callable[[Mapping[str, Any]], None]) -> None:
+        self._write_line, self._started = write_line, time.perf_counter()
+
+    def report_pass(self, frame: int, passes_done: int, total: int, nodes: Sequence[str]) -> None:
+        """Nothing: passes of several machines cannot be shown."""
+
+    def report_frame(self, report: FrameReport, frames_done: int, total: int) -> None:
+        """Write the line."""
+        seconds, self._started = time.perf_counter() - self._started, time.perf_counter()
+        facts = {"frame": report.frame, "seconds": round(seconds, 4), "kept": report.is_kept, "passes": report.passes}
+        self._write_line(facts)

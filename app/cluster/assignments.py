@@ -1,0 +1,82 @@
+"""Cuts the frames of a job into chunks by what frames have cost so far."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+
+from msgspec import Struct
+
+CHUNK_SECONDS = 4.0
+"""Seconds that a chunk is meant to take. The last frame of a chunk is written while nothing else is rendered, which
+takes some hundredths of a second: about 1 % of this time. Chosen so, and short enough for an even end."""
+
+MAX_CHUNK = 1000
+"""Frames of a chunk at most: of frames that cost nothing, since a message must stay small. A choice."""
+
+MAX_ATTEMPTS = 3
+"""How often a frame may end its process: once, and on two other workers."""
+
+SUSPECTS = 3
+"""Frames that a process works on at the same time: one is planned, one rendered, one written."""
+
+
+class Assignment(Struct, frozen=True):
+    """Frames that one worker is to render. `tried` are the workers that failed with them, in `attempts` tries."""
+
+    frames: tuple[int, ...]
+    attempts: int = 0
+    tried: frozenset[str] = frozenset()
+
+
+class AssignmentQueue:
+    """The frames that nobody renders yet."""
+
+    def __init__(self, frames: Sequence[int], *, is_chain: bool) -> None:
+        self._fresh = deque(frames)
+        self._repeated: deque[Assignment] = deque()
+        self._is_chain = is_chain
+        self._cost = 0.0
+        """Seconds of a frame: the mean of those that were measured, where newer ones count more."""
+
+    def __len__(self) -> int:
+        return len(self._fresh) + sum(len(assignment.frames) for assignment in self._repeated)
+
+    def note_cost(self, seconds: Sequence[float]) -> None:
+        """Take in what frames of a chunk have cost."""
+        for cost in seconds:
+            self._cost = cost if self._cost == 0.0 else 0.9 * self._cost + 0.1 * cost
+
+    def take(self, slots: int) -> Assignment:
+        """The next frames for a worker, of which `slots` render side by side. Towards the end chunks are smaller."""
+        if self._repeated:
+            return self._repeated.popleft()
+        if self._is_chain:
+            count = len(self._fresh)
+        else:
+            by_cost = int(CHUNK_SECONDS / self._cost) if self._cost > 0.0 else 1
+            count = max(1, min(by_cost, len(self._fresh) // (2 * max(1, slots)), MAX_CHUNK))
+        return Assignment(tuple(self._fresh.popleft() for _ in range(min(count, len(self._fresh)))))
+
+    def put_back(self, assignment: Assignment) -> None:
+        """Have frames rendered by somebody, whoever it was that did not finish them."""
+        self._repeated.append(assignment)
+
+    def put_suspects(self, frames: Sequence[int], before: Assignment, worker: str) -> tuple[int, ...]:
+        """Try frames again whose process ended: those that it may have worked on alone, the others together.
+
+        Returns the frames that have ended too many processes.
+        """
+        attempts, tried = before.attempts + 1, before.tried | {worker}
+        if self._is_chain:
+            if attempts >= MAX_ATTEMPTS:
+                return tuple(frames)
+            self.put_back(Assignment(tuple(frames), attempts, tried))
+            return ()
+        if len(before.frames) == 1 and attempts >= MAX_ATTEMPTS:
+            return tuple(frames)
+        for frame in frames[:SUSPECTS]:
+            self.put_back(Assignment((frame,), attempts, tried))
+        if rest := tuple(frames[SUSPECTS:]):
+            self.put_back(Assignment(rest, before.attempts, before.tried))
+        return ()

@@ -1,0 +1,286 @@
+"""Sends the frames of a job to the workers of a cluster, and hears what comes of them."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Callable, Mapping
+from queue import Empty, SimpleQueue
+from typing import TYPE_CHECKING, Any, Protocol
+from uuid import uuid4
+
+from msgspec import Struct, field
+from msgspec.structs import replace
+
+from ..errors import RenderError, rebuild_fault
+from .assignments import MAX_ATTEMPTS, Assignment, AssignmentQueue
+from .chunk import ChunkReport, FileMark, FrameChunk
+from .worker_task import read_version, render_chunk
+from .workers import WorkerRoster
+
+if TYPE_CHECKING:
+    from distributed import Client, Future
+
+_WAVES = 2
+"""Chunks that are sent for each place where one is rendered: while a worker renders one, it has the next."""
+
+_LOOK_INTERVAL = 1.0
+"""Seconds between two questions which workers there are: a choice."""
+
+_POLL = 0.1
+"""Seconds that this waits for a message at most, so that Ctrl-C is heard."""
+
+_LOST_SECONDS = 3.0
+"""Seconds without a connection after which the scheduler has gone: a choice; Dask tries again meanwhile."""
+
+_POINTLESS = frozenset({"UsageError", "GraphError", "DocumentError"})
+"""Errors that every worker has alike."""
+
+
+class CampaignListener(Protocol):
+    """Is told how far the frames are."""
+
+    def report_progress(self, frames: Mapping[int, float], workers: int) -> None:
+        """These frames are finished, with their seconds; so many workers render."""
+        ...
+
+    def report_note(self, sentence: str) -> None:
+        """Something that the user should know."""
+        ...
+
+
+class CampaignReport(Struct):
+    """What came of the frames: seconds of each that is finished, and why each other one cannot be rendered."""
+
+    seconds: dict[int, float] = field(default_factory=dict[int, float])
+    kept: set[int] = field(default_factory=set[int])
+    faults: dict[int, Mapping[str, Any]] = field(default_factory=dict[int, Mapping[str, Any]])
+    costs: list[Mapping[str, Any]] = field(default_factory=list[Mapping[str, Any]])
+    workers: set[str] = field(default_factory=set[str])
+    chunks: int = 0
+
+
+class FrameCampaign:
+    """The frames of one job on their way through a cluster. `chunk` is what all chunks share.
+
+    `mark_files` describes the files that frames read. `priority` is Dask's: chunks of a higher one go first.
+    """
+
+    def __init__(
+        self,
+        client: Client,
+        address: str,
+        chunk: FrameChunk,
+        mark_files: Callable[[tuple[int, ...]], Mapping[str, FileMark]],
+        listener: CampaignListener,
+        priority: int = 0,
+    ) -> None:
+        self._client, self._address, self._listener, self._priority = client, address, listener, priority
+        self._name = f"halation-{uuid4().hex[:8]}"
+        self._chunk, self._mark_files = replace(chunk, topic=self._name), mark_files
+        self._frames = AssignmentQueue(chunk.job.frames, is_chain=chunk.is_chain)
+        self._workers = WorkerRoster(wants_gpu=not chunk.job.deterministic)
+        self._inbox = SimpleQueue["Future[str] | Mapping[str, Any]"]()
+        self._sent: dict[str, tuple[Future[str], Assignment, list[str] | None]] = {}
+        self._looked_at = self._heard_at = 0.0
+        self._is_waiting = False
+        self.report = CampaignReport()
+
+    def run(self) -> CampaignReport:
+        """Have all frames rendered.
+
+        Raises HalationError for what no frame can be rendered with, and RenderError where the scheduler or all workers
+        are gone; finished frames stay.
+        """
+        self._client.subscribe_topic(self._name, lambda event: self._inbox.put(event[1]))
+        try:
+            while len(self._frames) or self._sent:
+                self._look_at_workers()
+                self._send_chunks()
+                self._receive()
+        finally:
+            self._cancel()
+        return self.report
+
+    # --- sending -----------------------------------------------------------------------------------------------------
+
+    def _send_chunks(self) -> None:
+        slots = self._workers.slots
+        while len(self._frames) and len(self._sent) < _WAVES * slots:
+            if not self._workers.usable:
+                return
+            self._send(self._frames.take(slots))
+
+    def _send(self, assignment: Assignment) -> None:
+        """Hand a chunk to Dask."""
+        chunk = replace(
+            self._chunk,
+            job=replace(self._chunk.job, frames=assignment.frames),
+            marks=self._mark_files(assignment.frames),
+            slots=self._workers.count_slots_by_machine(),
+        )
+        places = self._workers.choose(assignment.tried)
+        self.report.chunks += 1
+        key = f"{self._name}-{self.report.chunks}"
+        future = self._client.submit(
+            render_chunk,
+            chunk.to_json(),
+            key=key,
+            pure=False,
+            workers=places,
+            priority=self._priority,
+            resources={"GPU": 1} if self._workers.needs_gpu else None,
+        )
+        self._sent[key] = future, assignment, places
+        future.add_done_callback(self._inbox.put)
+
+    def _cancel(self) -> None:
+        """Have no more rendered of this job."""
+        with contextlib.suppress(Exception):  # without a scheduler there is nothing to cancel
+            self._client.unsubscribe_topic(self._name)
+            if self._sent:
+                self._client.cancel([future for future, _, _ in self._sent.values()], asynchronous=False, force=True)
+        self._sent.clear()
+
+    # --- hearing -----------------------------------------------------------------------------------------------------
+
+    def _receive(self) -> None:
+        """Take in the messages that are there; wait a moment for the first one."""
+        with contextlib.suppress(Empty):
+            message = self._inbox.get(timeout=_POLL)
+            while True:
+                if isinstance(message, Mapping):
+                    self._note_frames({event["frame"]: event["seconds"] for event in message["frames"]})
+                else:
+                    self._take_in(message)
+                message = self._inbox.get_nowait()
+
+    def _take_in(self, future: Future[str]) -> None:
+        """What has come of a chunk."""
+        if future.key not in self._sent:
+            return
+        _, assignment, _ = self._sent.pop(str(future.key))
+        if future.status == "finished":
+            try:
+                report = ChunkReport.from_json(future.result(timeout=_LOST_SECONDS))
+            except Exception:  # the worker has gone before the text was fetched: finished frames are kept
+                self._frames.put_back(assignment)
+                return
+            self._judge(report, assignment)
+        elif future.status == "error":
+            self._judge_loss(future.exception(timeout=_LOST_SECONDS), assignment)
+        else:
+            self._frames.put_back(assignment)
+
+    def _judge(self, report: ChunkReport, assignment: Assignment) -> None:
+        """Count what is finished, and decide who tries the rest again."""
+        if report.refusal:
+            if report.worker not in self._workers.refusals:
+                self._refuse(report.worker, report.refusal)
+            self._frames.put_back(assignment)
+            return
+        self._note_frames(report.seconds)
+        self.report.kept.update(report.kept)
+        self.report.workers.add(report.worker)
+        self.report.costs += [report.costs] if report.costs else []
+        self._frames.note_cost([cost for frame, cost in report.seconds.items() if frame not in report.kept])
+        missing = [frame for frame in assignment.frames if frame not in self.report.seconds]
+        if report.death:
+            lost = self._frames.put_suspects(missing, assignment, report.worker)
+            self._give_up(lost, f"{report.death} each time, on {MAX_ATTEMPTS} tries: the last was on {report.worker}")
+            return
+        for frame in missing:
+            self._judge_fault(frame, report, assignment)
+        if report.faults:
+            sentence = str(next(iter(report.faults.values()))["message"])
+            has_finished = bool(report.seconds)
+            if self._workers.note_outcome(report.worker, has_finished=has_finished, sentence=sentence):
+                self._refuse(report.worker, self._workers.refusals[report.worker])
+        else:
+            self._workers.note_outcome(report.worker, has_finished=True, sentence="")
+
+    def _judge_fault(self, frame: int, report: ChunkReport, assignment: Assignment) -> None:
+        """Try a frame on another worker that cannot be rendered on one, or give it up."""
+        facts = report.faults.get(frame)
+        frames = assignment.frames if self._chunk.is_chain else (frame,)
+        tried = assignment.tried | {report.worker}
+        if facts is None:
+            self._frames.put_back(Assignment((frame,), assignment.attempts, assignment.tried))
+        elif facts["kind"] in _POINTLESS:
+            raise rebuild_fault(facts)
+        elif assignment.attempts + 1 < MAX_ATTEMPTS and set(self._workers.usable) - tried:
+            if frame == frames[0] or not self._chunk.is_chain:
+                self._frames.put_back(Assignment(frames, assignment.attempts + 1, tried))
+        else:
+            self.report.faults[frame] = facts
+
+    def _judge_loss(self, fault: BaseException | None, assignment: Assignment) -> None:
+        """Decide about a chunk that Dask has given up: its workers ended, one after the other."""
+        name = type(fault).__name__
+        if name == "KilledWorker":
+            lost = self._frames.put_suspects(assignment.frames, assignment, "")
+            self._give_up(lost, "the worker that renders it is ended each time")
+        elif isinstance(fault, ImportError):
+            self._frames.put_back(assignment)
+        else:
+            raise RenderError(f"--cluster {self._address}: a worker reports {name}: {fault}")
+
+    def _give_up(self, frames: tuple[int, ...], reason: str) -> None:
+        facts = {"kind": "RenderError", "exit_code": 1}
+        self.report.faults |= {frame: {**facts, "message": reason} for frame in frames}
+
+    def _note_frames(self, seconds: Mapping[int, float]) -> None:
+        self.report.seconds |= seconds
+        self._listener.report_progress(self.report.seconds, len(self._workers.usable))
+
+    # --- workers -----------------------------------------------------------------------------------------------------
+
+    def _look_at_workers(self) -> None:
+        """Ask the scheduler for its workers, try the new ones, and take chunks from those that have gone."""
+        now = time.monotonic()
+        if now - self._looked_at < _LOOK_INTERVAL:
+            return
+        self._looked_at = now
+        if self._client.status == "running":
+            with contextlib.suppress(Exception):  # a connection that breaks just now is noticed below
+                facts: Mapping[str, Any] = self._client.scheduler_info(n_workers=-1)["workers"]
+                self._heard_at = now
+                self._check_new(self._workers.update(facts))
+        if self._heard_at and now - self._heard_at > _LOST_SECONDS:
+            count, total = len(self.report.seconds), len(self._chunk.job.frames)
+            raise RenderError(
+                f"--cluster {self._address}: the scheduler has gone; {count} of {total} frames are finished: start it "
+                "again, and run the same command with --resume"
+            )
+        for key, (future, assignment, places) in list(self._sent.items()):
+            if places is not None and not any(place in self._workers for place in places):
+                del self._sent[key]
+                with contextlib.suppress(Exception):
+                    future.cancel(force=True)
+                self._frames.put_back(assignment)
+        self._explain_waiting()
+
+    def _check_new(self, addresses: list[str]) -> None:
+        if remote := [address for address in addresses if not address.startswith("inproc")]:
+            versions: Mapping[str, object] = self._client.run(read_version, workers=remote, on_error="return")
+            for address in self._workers.check_versions(versions):
+                self._listener.report_note(f"worker {address}: {self._workers.refusals[address]}: it gets no frames")
+
+    def _refuse(self, address: str, reason: str) -> None:
+        self._workers.refusals[address] = reason
+        self._listener.report_note(f"worker {address}: {reason}: it gets no frames")
+
+    def _explain_waiting(self) -> None:
+        """Raise RenderError where no worker can render; say once that none is there yet."""
+        if self._workers.usable:
+            self._is_waiting = False
+        elif self._workers.is_empty:
+            if not self._is_waiting:
+                self._listener.report_note(
+                    f"no worker is connected to {self._address}: start one with 'dask worker {self._address}'; "
+                    "frames are sent as soon as one is there"
+                )
+            self._is_waiting = True
+        else:
+            reasons = "; ".join(f"{address}: {reason}" for address, reason in self._workers.refusals.items())
+            raise RenderError(f"--cluster {self._address}: no worker can render these frames: {reasons}")

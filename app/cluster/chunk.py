@@ -1,0 +1,82 @@
+"""What is sent to a worker: frames of a graph, with all that tells whether the worker would render the same pixels."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+import msgspec
+from msgspec import Struct, field
+
+from ..errors import UsageError
+from ..renderer.jobs.render_job import RenderJob
+
+
+class FileMark(Struct, frozen=True):
+    """The size of a file in bytes, and the SHA-256 of its content."""
+
+    size: int
+    digest: str
+
+
+class FrameChunk(Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=True):
+    """Some frames of a job.
+
+    The `job` has the whole graph as its `document`, whose relative paths start at `folder`, and absolute paths. They
+    are those of the machine that has sent it: `path_map` says where files are elsewhere. `marks` are the files that
+    the frames read. `contents` are small files as base64, such as LUTs, by their paths.
+    """
+
+    job: RenderJob
+    folder: str
+    path_map: tuple[tuple[str, str], ...] = ()
+    marks: Mapping[str, FileMark] = field(default_factory=dict[str, FileMark])
+    contents: Mapping[str, str] = field(default_factory=dict[str, str])
+    versions: Mapping[str, str] = field(default_factory=dict[str, str])
+    """The version of everything that decides pixels, by its name (see `versions`)."""
+    is_chain: bool = False
+    """True if each frame needs the one before it."""
+    topic: str = ""
+    """The Dask topic to which finished frames are reported."""
+    slots: Mapping[str, int] = field(default_factory=dict[str, int])
+    """How many chunks are rendered side by side on a machine, by its name in the network."""
+
+    def to_json(self) -> str:
+        """The chunk as one line of JSON in ASCII."""
+        return json.dumps(msgspec.to_builtins(self))
+
+    @staticmethod
+    def from_json(text: str) -> FrameChunk:
+        """The chunk in a text of `to_json`. Raises UsageError for any other text."""
+        try:
+            return msgspec.convert(json.loads(text), FrameChunk)
+        except (ValueError, RecursionError) as fault:
+            raise UsageError(f"the text is not a chunk of frames: {fault}") from None
+
+
+class ChunkReport(Struct, frozen=True, omit_defaults=True):
+    """What came of a chunk on `worker`, as its address.
+
+    `seconds` are those of each finished frame; `faults` describe the frames that cannot be rendered. `death` says how
+    the process ended that rendered, `refusal` why this worker can render no chunk of the job.
+    """
+
+    worker: str
+    seconds: Mapping[int, float] = field(default_factory=dict[int, float])
+    kept: tuple[int, ...] = ()
+    faults: Mapping[int, Mapping[str, Any]] = field(default_factory=dict[int, Mapping[str, Any]])
+    costs: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    """The report of a render job, without its frames."""
+    death: str = ""
+    refusal: str = ""
+    is_cancelled: bool = False
+
+    def to_json(self) -> str:
+        """The report as a line of JSON."""
+        return json.dumps(msgspec.to_builtins(self))
+
+    @staticmethod
+    def from_json(text: str) -> ChunkReport:
+        """The report in a text of `to_json`."""
+        return msgspec.convert(json.loads(text), ChunkReport, strict=False)

@@ -1,0 +1,103 @@
+"""Reaches the scheduler of a cluster, or starts one with workers inside of this process."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import os
+import re
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from ..errors import RenderError, UsageError
+from .worker_task import open_pool
+
+if TYPE_CHECKING:
+    from distributed import Client, LocalCluster
+
+    from ..renderer.jobs.render_job import RenderJob
+
+CONNECT_SECONDS = 5.0
+"""Seconds until a scheduler must answer: a choice, many times what a connection through a continent takes."""
+
+_LOCAL = re.compile(r"local(?::(?P<count>\d+))?")
+
+
+@contextmanager
+def open_client(address: str, job: RenderJob | None = None) -> Iterator[Client]:
+    """A connection to the scheduler at an address such as tcp://farm:8786, or `local:4` for four workers here.
+
+    Workers here begin to load what a `job` needs before Dask is there.
+
+    Raises UsageError for another text, RenderError if no scheduler answers.
+    """
+    local = _LOCAL.fullmatch(address)
+    if local is None and "://" not in address:
+        raise UsageError(f"--cluster {address}: write tcp://HOST:PORT of a Dask scheduler, or local:4 for four workers")
+    count = int(local["count"] or os.cpu_count() or 1) if local else 0
+    if local and not count:
+        raise UsageError(f"--cluster {address}: at least one worker is needed: write local:1")
+    with contextlib.ExitStack() as stack:
+        if local:
+            stack.callback(open_pool().close)
+            if job is not None:
+                open_pool().warm(job, min(count, len(job.frames) or count))
+        yield stack.enter_context(_connect(address, count))
+
+
+@contextmanager
+def _connect(address: str, count: int) -> Iterator[Client]:
+    """A connection to a scheduler; with a `count` to one here, with so many workers."""
+    try:
+        import distributed
+    except ImportError:
+        raise UsageError("--cluster needs Dask: pip install 'halation[cluster]'") from None
+    # Dask writes pages about what it tries again; the user gets one sentence for it.
+    for name in ("distributed", "distributed.client", "distributed.scheduler", "distributed.worker", "tornado"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)
+    warnings.filterwarnings("ignore", module=r"distributed(\..*)?")
+    with contextlib.ExitStack() as stack:
+        target: str | LocalCluster = stack.enter_context(_start_cluster(count)) if count else address
+        try:
+            client = distributed.Client(target, timeout=CONNECT_SECONDS, set_as_default=False)
+        except (OSError, TimeoutError, ValueError, TypeError) as fault:
+            reason = "" if isinstance(fault, OSError | TimeoutError) else f" ({fault})"
+            raise RenderError(
+                f"--cluster {address}: no scheduler answers there{reason}: start one with 'dask scheduler', or check "
+                "the address"
+            ) from None
+        try:
+            yield client
+        finally:
+            with contextlib.suppress(Exception):  # whatever Dask says of a connection that is gone anyway
+                client.close(timeout=1)
+
+
+def find_dashboard(client: Client) -> str:
+    """The address of Dask's page about a scheduler; "" for one inside of this process, which has none."""
+    from distributed import LocalCluster
+
+    return "" if isinstance(client.cluster, LocalCluster) else str(client.dashboard_link or "")
+
+
+@contextmanager
+def _start_cluster(count: int) -> Iterator[LocalCluster]:
+    """A scheduler with workers on threads of this process: each renders in a process beside it anyway."""
+    from distributed import LocalCluster
+
+    cluster = LocalCluster(
+        n_workers=count,
+        threads_per_worker=1,
+        processes=False,
+        dashboard_address=None,
+        worker_dashboard_address=None,
+        memory_limit=0,
+        silence_logs=logging.CRITICAL,
+    )
+    try:
+        yield cluster
+    finally:
+        with contextlib.suppress(Exception):
+            cluster.close(timeout=1)

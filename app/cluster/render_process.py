@@ -1,0 +1,205 @@
+"""Warm processes beside a worker, each of which renders one chunk after the other.
+
+A worker of Dask cannot render itself: OpenGL wants one thread, a driver may crash, and a task that runs cannot be
+ended. So each chunk goes as a line to a process of its own, which answers with a line for each frame. It is kept for
+the next chunk of the same kind, with its device, programs and graph, and ends when no chunk comes for some time.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import queue
+import signal
+import subprocess
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any
+from urllib.parse import urlsplit
+
+from ..renderer.jobs.render_job import RenderJob, worker_command
+from ..resources.machine import available_cores, resident_memory
+from .chunk import ChunkReport, FrameChunk
+
+CHECK_INTERVAL = 0.1
+"""Seconds between two looks whether a chunk is still needed, and how much memory its process takes: a choice."""
+
+IDLE_SECONDS = 120.0
+"""Seconds after which a process ends for which there is no chunk: a choice, longer than a user takes to correct a value
+and render again."""
+
+_PATIENCE = 1.0
+"""Seconds that a process may take to remove what it has begun to write: a frame is encoded in less, mostly."""
+
+ProcessKind = tuple[bool, str, int, str]
+
+
+def find_kind(job: RenderJob) -> ProcessKind:
+    """What a process is opened for; jobs of one kind share its device."""
+    return job.deterministic, job.form or "", job.memory, job.sandbox.root
+
+
+class RenderProcess:
+    """A process that renders chunks. `threads` are those of its software rasterizer."""
+
+    def __init__(self, threads: int) -> None:
+        environment = {**os.environ, "PYTHONIOENCODING": "utf-8"}
+        for name in ("LP_NUM_THREADS", "OPENIMAGEIO_THREADS"):
+            environment.setdefault(name, str(threads))
+        self._process = subprocess.Popen(
+            [*worker_command(), "--chunks"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            encoding="utf-8",
+            errors="surrogateescape",
+            env=environment,
+        )
+        self._lines = queue.SimpleQueue[str | None]()
+        threading.Thread(target=self._listen, name="render process", daemon=True).start()
+
+    @property
+    def is_alive(self) -> bool:
+        """True if it can take another chunk."""
+        return self._process.poll() is None
+
+    def render(
+        self,
+        chunk: FrameChunk,
+        report_frame: Callable[[dict[str, Any]], None],
+        is_cancelled: Callable[[], bool],
+        memory_limit: int,
+    ) -> ChunkReport:
+        """Render a chunk and report each frame; `memory_limit` is how many bytes the process may take, 0 for any."""
+        seconds: dict[int, float] = {}
+        kept: list[int] = []
+
+        def report(**facts: Any) -> ChunkReport:
+            return ChunkReport("", seconds, tuple(kept), **facts)
+
+        assert self._process.stdin is not None
+        with contextlib.suppress(OSError):
+            self._process.stdin.write(f"{chunk.to_json()}\n")
+            self._process.stdin.flush()
+        checked_at = time.monotonic()
+        while True:
+            line = self._read_line()
+            if time.monotonic() - checked_at > CHECK_INTERVAL:
+                checked_at = time.monotonic()
+                if is_cancelled():
+                    self.stop()
+                    return report(is_cancelled=True)
+                if 0 < memory_limit < resident_memory(self._process.pid):
+                    self.stop()
+                    return report(death=f"it takes more than the {memory_limit / 2**30:.1f} GiB of its worker")
+            if line == "":
+                continue
+            if line is None:
+                return report(death=self._describe_end())
+            event: Mapping[str, Any] = json.loads(line)
+            if "frame" in event:
+                seconds[event["frame"]] = event["seconds"]
+                kept += [event["frame"]] * bool(event["kept"])
+                report_frame(dict(event))
+            elif "refusal" in event:
+                return report(refusal=event["refusal"])
+            else:
+                faults = {int(frame): fault for frame, fault in event["faults"].items()}
+                return report(faults=faults, costs=event["costs"])
+
+    def finish(self) -> None:
+        """Send no more chunks, so that the process ends."""
+        assert self._process.stdin is not None
+        with contextlib.suppress(OSError):
+            self._process.stdin.close()
+
+    def stop(self) -> None:
+        """Ask the process to end, which leaves no unfinished file, and kill it if it does not."""
+        deadline = time.monotonic() + _PATIENCE
+        assert self._process.stdin is not None
+        if not self._process.stdin.closed:
+            self._process.terminate()
+            self.finish()
+        while self.is_alive and time.monotonic() < deadline:
+            time.sleep(CHECK_INTERVAL / 10)
+        if self.is_alive:
+            self._process.kill()
+        self._process.wait()
+
+    def _read_line(self) -> str | None:
+        """The next line; "" if none comes for a moment, None after the last one."""
+        try:
+            return self._lines.get(timeout=CHECK_INTERVAL)
+        except queue.Empty:
+            return ""
+
+    def _listen(self) -> None:
+        assert self._process.stdout is not None
+        for line in self._process.stdout:
+            self._lines.put(line)
+        self._lines.put(None)
+
+    def _describe_end(self) -> str:
+        code = self._process.wait()
+        if code >= 0:
+            return f"its process ended by itself (exit code {code})"
+        try:
+            return f"its process was ended by {signal.Signals(-code).name}"
+        except ValueError:
+            return f"its process was ended by signal {-code}"
+
+
+class RenderProcessPool:
+    """The processes of one or several workers, lent to one chunk at a time."""
+
+    def __init__(self) -> None:
+        self._idle: list[tuple[ProcessKind, RenderProcess]] = []
+        self._lock = threading.Lock()
+
+    @contextmanager
+    def lend_process(self, chunk: FrameChunk, address: str) -> Iterator[RenderProcess]:
+        """A warm process for a chunk, started if none is free."""
+        kind = find_kind(chunk.job)
+        process = self._take(kind) or RenderProcess(_share_cores(chunk, address))
+        try:
+            yield process
+        except BaseException:
+            process.stop()
+            raise
+        if process.is_alive:
+            with self._lock:
+                self._idle.append((kind, process))
+
+    def warm(self, job: RenderJob, count: int) -> None:
+        """Start processes before there are chunks for them: they load what they need meanwhile."""
+        threads = max(1, available_cores() // count)
+        processes = [(find_kind(job), RenderProcess(threads)) for _ in range(min(count, available_cores()))]
+        with self._lock:
+            self._idle += processes
+
+    def close(self) -> None:
+        """End all processes that are free."""
+        with self._lock:
+            idle, self._idle = self._idle, []
+        for _, process in idle:
+            process.finish()
+        for _, process in idle:
+            process.stop()
+
+    def _take(self, kind: ProcessKind) -> RenderProcess | None:
+        with self._lock:
+            self._idle = [(other, process) for other, process in self._idle if process.is_alive]
+            place = next((place for place, (other, _) in enumerate(self._idle) if other == kind), None)
+            return None if place is None else self._idle.pop(place)[1]
+
+
+def find_machine(address: str) -> str:
+    """The name of the machine in the address of a worker; "" for a worker inside of the sending process."""
+    return "" if address.startswith("inproc") else urlsplit(address).hostname or ""
+
+
+def _share_cores(chunk: FrameChunk, address: str) -> int:
+    """Threads for a process where several on one machine render side by side; each using all cores is slower."""
+    return max(1, available_cores() // max(1, chunk.slots.get(find_machine(address), 1)))

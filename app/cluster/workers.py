@@ -1,0 +1,100 @@
+"""Which workers of a cluster may render the frames of a job."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Collection, Iterable, Mapping
+from typing import Any
+
+from ..version import VERSION
+from .render_process import find_machine
+
+FAILURES = 3
+"""Chunks in a row that a worker may fail with before it gets no more: its disk may be full. A choice."""
+
+
+class WorkerRoster:
+    """The workers that are connected, and those that cannot render, with the reason.
+
+    Where workers have a resource "GPU" and the job `wants_gpu`, only these render: frames of one job come from one kind
+    of device.
+    """
+
+    def __init__(self, *, wants_gpu: bool) -> None:
+        self._wants_gpu = wants_gpu
+        self._facts: dict[str, Mapping[str, Any]] = {}
+        self._failures = Counter[str]()
+        self.refusals: dict[str, str] = {}
+
+    def update(self, facts_by_address: Mapping[str, Mapping[str, Any]]) -> list[str]:
+        """Take in what the scheduler says of its workers; those that are new."""
+        new = [address for address in facts_by_address if address not in self._facts]
+        self._facts = dict(facts_by_address)
+        return new
+
+    def __contains__(self, address: str) -> bool:
+        return address in self._facts
+
+    @property
+    def is_empty(self) -> bool:
+        """True if no worker is connected at all."""
+        return not self._facts
+
+    @property
+    def needs_gpu(self) -> bool:
+        """True if only workers with a GPU render."""
+        return self._wants_gpu and any(self._count_gpus(address) for address in self._facts)
+
+    @property
+    def usable(self) -> list[str]:
+        """The workers that may get frames."""
+        return [
+            address
+            for address in self._facts
+            if address not in self.refusals and (not self.needs_gpu or self._count_gpus(address))
+        ]
+
+    @property
+    def slots(self) -> int:
+        """How many chunks can be rendered at the same time."""
+        return sum(map(self._count_slots, self.usable))
+
+    def count_slots_by_machine(self) -> dict[str, int]:
+        """How many chunks each machine can render at the same time."""
+        counts = Counter[str]()
+        for address in self.usable:
+            counts[find_machine(address)] += self._count_slots(address)
+        return dict(counts)
+
+    def choose(self, tried: Collection[str]) -> list[str] | None:
+        """The workers that a chunk is sent to, other ones than it was tried on, if there are any; None for all."""
+        usable = self.usable
+        if not self.refusals and not tried:
+            return None
+        return [address for address in usable if address not in tried] or usable
+
+    def check_versions(self, versions: Mapping[str, object]) -> Iterable[str]:
+        """Refuse workers with another version of Halation, or without it; their addresses."""
+        for address, version in versions.items():
+            if isinstance(version, ImportError):
+                self.refusals[address] = f"it has no Halation that takes frames: pip install 'halation=={VERSION}'"
+            elif isinstance(version, str) and version != VERSION:
+                self.refusals[address] = f"it has Halation {version}, and the job was sent by {VERSION}"
+            else:
+                continue
+            yield address
+
+    def note_outcome(self, address: str, *, has_finished: bool, sentence: str) -> bool:
+        """Note whether a worker has finished frames of a chunk; True if it has failed too often, and gets no more."""
+        self._failures[address] = 0 if has_finished else self._failures[address] + 1
+        if self._failures[address] < FAILURES or address in self.refusals:
+            return False
+        self.refusals[address] = f"it has failed {FAILURES} times in a row: {sentence}"
+        return True
+
+    def _count_gpus(self, address: str) -> int:
+        return int(self._facts[address].get("resources", {}).get("GPU", 0))
+
+    def _count_slots(self, address: str) -> int:
+        threads = int(self._facts[address].get("nthreads", 1))
+        return min(threads, self._count_gpus(address)) if self.needs_gpu else threads

@@ -1,0 +1,144 @@
+"""A farm of real processes: a scheduler of Dask and workers, each in a folder of its own."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+PYTHON = sys.executable
+FRAMES = range(1, 9)
+
+CRASH = """
+import os, sys
+if "--chunks" in sys.orig_argv:
+    from halation.renderer.jobs import item_session
+    plan = item_session.ItemSession.plan_task
+    def plan_task(self, frame):
+        if str(frame) in os.environ.get("CRASH_AT", "").split(","):
+            os.kill(os.getpid(), 9)
+        return plan(self, frame)
+    item_session.ItemSession.plan_task = plan_task
+"""
+"""Loaded by each Python of a worker (`sitecustomize`): frames that end the process that renders them."""
+
+
+@dataclass
+class Farm:
+    """A scheduler and its workers, each by the number of its group of processes."""
+
+    folder: Path
+    address: str
+    scheduler: int
+    workers: list[int] = field(default_factory=list)
+
+    def start_worker(self, *words: str, **variables: str) -> int:
+        """Start a worker with one thread in a folder of its own."""
+        folder = self.folder / f"worker{len(self.workers)}"
+        folder.mkdir()
+        command = ["worker", self.address, "--nthreads", "1", "--no-dashboard", "--local-directory", str(folder)]
+        self.workers.append(start_dask([*command, *words], folder, {"LP_NUM_THREADS": "1", **variables}))
+        return self.workers[-1]
+
+    def stop(self) -> None:
+        """End all processes."""
+        for group in (*self.workers, self.scheduler):
+            end_group(group)
+
+
+def start_dask(words: list[str], folder: Path, variables: dict[str, str]) -> int:
+    """Start a program of Dask in a group of its own, and return the number of the group.
+
+    A shell starts it in the background and ends, so that it outlives the test that has started it.
+    """
+    script = f'"$@" >>{words[0]}.log 2>&1 & echo $$'
+    environment = {**os.environ, **variables}
+    shell = subprocess.run(
+        ["sh", "-c", script, "sh", PYTHON, "-m", "dask", *words],
+        cwd=folder,
+        env=environment,
+        stdout=subprocess.PIPE,
+        text=True,
+        check=True,
+        start_new_session=True,
+    )
+    return int(shell.stdout)
+
+
+def end_group(group: int) -> None:
+    """Kill all processes of a group."""
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(group, signal.SIGKILL)
+
+
+def find_port() -> int:
+    """A free port."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def start_scheduler(folder: Path, port: int) -> int:
+    """Start a scheduler and wait until it listens."""
+    words = ["scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard"]
+    group = start_dask(words, folder, {})
+    for _ in range(600):
+        with socket.socket() as probe:
+            if probe.connect_ex(("127.0.0.1", port)) == 0:
+                return group
+        time.sleep(0.05)
+    raise AssertionError((folder / "scheduler.log").read_text())
+
+
+@dataclass(frozen=True)
+class Ending:
+    """How a command ended and what it said."""
+
+    code: int
+    out: str
+    err: str
+
+
+Halation = Callable[..., Ending]
+
+
+def start_halation(*words: object, cwd: Path) -> subprocess.Popen[str]:
+    """Start a command of Halation."""
+    command = [PYTHON, "-m", "halation.cli", *map(str, words)]
+    environment = {**os.environ, "LP_NUM_THREADS": "1"}
+    return subprocess.Popen(
+        command, cwd=cwd, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+
+
+def make_graph() -> dict[str, object]:
+    """The graph of the shot."""
+    return {
+        "halation": 1,
+        "inputs": {"plate": {"type": "Image", "file": "plates/p.####.exr"}},
+        "outputs": {"image": {"type": "Image"}},
+        "nodes": {
+            "inner": {"type": "group", "path": "group.json"},
+            "lut": {"type": "lut_file", "values": {"file": "look.cube"}},
+            "blur": {"type": "gaussian_blur"},
+        },
+        "animation": {"blur.sigma": {"keys": [{"frame": 1, "value": 0.0}, {"frame": 8, "value": 3.0}]}},
+        "links": {
+            "inner.image": "inputs.plate",
+            "lut.image": "inner.image",
+            "blur.image": "lut.out",
+            "outputs.image": "blur.out",
+        },
+    }
+
+
+def read_frames(folder: Path, frames: range = FRAMES) -> list[bytes]:
+    """The bytes of all frames."""
+    return [(folder / f"f.{frame:04d}.exr").read_bytes() for frame in frames]
