@@ -45,6 +45,7 @@ REASONS: dict[str, Cause] = {
     "makes pictures": "case",
     "libjpeg ends the process of whoever writes it": "case",
     "it is never part of a drag": "case",
+    "Dask is not installed": "tool",
     "PyAV is not installed": "tool",
     "pyoidn is not installed": "tool",
     "this PyAV has no encoder": "tool",

@@ -27,7 +27,6 @@ from ..cluster.versions import describe_versions, find_version_fault
 from ..errors import DeviceError, GraphError, HalationError, InputError, UsageError
 from ..graph.paths import change_paths, resolve_path
 from ..resources.input_files import content_hash, fingerprint
-from ..resources.sandbox import read_process_sandbox
 from . import parsing
 from .job_setup import describe_costs, make_output_settings, make_request, open_renderer
 from .outcome import INTERRUPTED, describe_fault
@@ -44,11 +43,14 @@ _POINTLESS = (UsageError, GraphError)
 """Errors that all frames of a job have alike."""
 
 
-def render_chunks() -> int:
-    """Render the chunks that are read from standard input until it ends, or none comes for some time."""
+def render_chunks(sandbox: Sandbox) -> int:
+    """Render the chunks that are read from standard input until it ends, or none comes for some time.
+
+    Files outside of `sandbox` are refused, whatever a chunk says.
+    """
     _load_modules()
     with tempfile.TemporaryDirectory(prefix="halation-") as folder:
-        renderer = ChunkRenderer(Path(folder), _write_line)
+        renderer = ChunkRenderer(Path(folder), _write_line, sandbox)
         try:
             for line in _read_lines():
                 renderer.render(FrameChunk.from_json(line))
@@ -78,8 +80,8 @@ def _write_line(facts: Mapping[str, Any]) -> None:
 class ChunkRenderer:
     """Renders chunks with one device. `folder` is for small files that travel with chunks; `write_line` answers."""
 
-    def __init__(self, folder: Path, write_line: Callable[[Mapping[str, Any]], None]) -> None:
-        self._folder, self._write_line = folder, write_line
+    def __init__(self, folder: Path, write_line: Callable[[Mapping[str, Any]], None], sandbox: Sandbox) -> None:
+        self._folder, self._write_line, self._sandbox = folder, write_line, sandbox
         self._renderer: Renderer | None = None
         self._last_graph: tuple[tuple[str, str], Graph] | None = None
         self._hashes: dict[str, str] = {}
@@ -89,32 +91,30 @@ class ChunkRenderer:
         paths = PathMap(chunk.path_map)
         try:
             chunk = replace(chunk, job=self._localize_job(chunk.job, paths))
+            if chunk.job.sandbox.root:  # what travels would lie outside of it
+                chunk = replace(chunk, contents={})
             graph = self._open_graph(chunk, paths)
             if fault := find_version_fault(describe_versions(graph), chunk.versions):
                 self._write_line({"refusal": fault})
                 return
             renderer = self._open_renderer(chunk.job, graph)
+            self._check_files(chunk, paths)
+            self._render_frames(chunk, self._locate_files(chunk, graph, paths), renderer)
         except DeviceError as fault:
             self._write_line({"refusal": f"it cannot render: {fault}"})
-            return
         except HalationError as fault:
-            self._write_line({"faults": dict.fromkeys(chunk.job.frames, describe_fault(fault)), "costs": {}})
-            return
-        self._render_frames(chunk, graph, renderer, paths)
+            # Of several frames, which each may read another file, the sender sends each alone to find the faulty one.
+            is_clear = len(chunk.job.frames) == 1 or chunk.is_chain or isinstance(fault, _POINTLESS)
+            faults = dict.fromkeys(chunk.job.frames, describe_fault(fault)) if is_clear else {}
+            self._write_line({"faults": faults, "costs": {}})
 
-    def _render_frames(self, chunk: FrameChunk, graph: Graph, renderer: Renderer, paths: PathMap) -> None:
+    def _render_frames(self, chunk: FrameChunk, graph: Graph, renderer: Renderer) -> None:
         """Render the frames together, and after an error those that are missing one by one, to find the faulty ones."""
-        waiting, faults, costs = chunk.job.frames, dict[int, Mapping[str, Any]](), dict[str, Any]()
-        try:
-            self._check_files(chunk, paths)
-            local_graph = self._locate_files(chunk, graph, paths)
-        except HalationError as fault:
-            faults = dict.fromkeys(waiting, describe_fault(fault))
-            waiting = ()
-        pieces: list[tuple[int, ...]] = [waiting] if waiting else []
+        faults, costs = dict[int, Mapping[str, Any]](), dict[str, Any]()
+        pieces = [chunk.job.frames]
         while pieces:
             frames = pieces.pop(0)
-            item = self._make_item(chunk, local_graph, frames)
+            item = self._make_item(chunk, graph, frames)
             finished, fault, costs = self._run(renderer, item, chunk)
             missing = [frame for frame in frames if frame not in finished]
             if fault is None:
@@ -157,7 +157,7 @@ class ChunkRenderer:
 
     def _localize_job(self, job: RenderJob, paths: PathMap) -> RenderJob:
         """The job with paths of this machine, in the sandbox of this process."""
-        sandbox: Sandbox = read_process_sandbox()
+        sandbox = self._sandbox
         return replace(
             job,
             inputs={name: paths.locate(file) for name, file in job.inputs.items()},

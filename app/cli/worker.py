@@ -32,7 +32,7 @@ def worker(
     if chunks:
         from .chunk_worker import render_chunks
 
-        return render_chunks()
+        return render_chunks(read_process_sandbox())
     end_with_watchdog()
     job = RenderJob.from_json(read_standard_input())
     if job.sandbox.root:

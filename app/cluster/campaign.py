@@ -6,7 +6,7 @@ import contextlib
 import time
 from collections.abc import Callable, Mapping
 from queue import Empty, SimpleQueue
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, cast
 from uuid import uuid4
 
 from msgspec import Struct, field
@@ -168,7 +168,7 @@ class FrameCampaign:
                 return
             self._judge(report, assignment)
         elif future.status == "error":
-            self._judge_loss(future.exception(timeout=_LOST_SECONDS), assignment)
+            self._judge_loss(cast("BaseException | None", future.exception(timeout=_LOST_SECONDS)), assignment)
         else:
             self._frames.put_back(assignment)
 
@@ -262,8 +262,8 @@ class FrameCampaign:
 
     def _check_new(self, addresses: list[str]) -> None:
         if remote := [address for address in addresses if not address.startswith("inproc")]:
-            versions: Mapping[str, object] = self._client.run(read_version, workers=remote, on_error="return")
-            for address in self._workers.check_versions(versions):
+            versions = self._client.run(read_version, workers=remote, on_error="return")
+            for address in self._workers.check_versions(cast("Mapping[str, object]", versions)):
                 self._listener.report_note(f"worker {address}: {self._workers.refusals[address]}: it gets no frames")
 
     def _refuse(self, address: str, reason: str) -> None:

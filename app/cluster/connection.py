@@ -9,7 +9,7 @@ import re
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from ..errors import RenderError, UsageError
 from .worker_task import open_pool
@@ -91,7 +91,7 @@ def _start_cluster(count: int) -> Iterator[LocalCluster]:
         n_workers=count,
         threads_per_worker=1,
         processes=False,
-        dashboard_address=None,
+        dashboard_address=cast("str", None),
         worker_dashboard_address=None,
         memory_limit=0,
         silence_logs=logging.CRITICAL,

@@ -34,6 +34,6 @@ def parse_path_map(texts: Sequence[str]) -> tuple[tuple[str, str], ...]:
         before, _, after = text.partition("=")
         is_absolute = after.startswith(("/", "\\")) or after[1:2] == ":"  # perhaps of another system
         if not PurePath(before).is_absolute() or not is_absolute:
-            raise UsageError(f"--map {text}: write --map FROM=TO with two absolute folders, such as /mnt/show=/show")
+            raise UsageError(f"--map {text}: write --map FROM=TO with two absolute folders, such as /farm/show=/show")
         pairs.append((os.path.normpath(before), after))
     return tuple(pairs)

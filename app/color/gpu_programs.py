@@ -20,7 +20,6 @@ from .config_files import make_sandboxed_files, may_name_files
 from .display import make_display_processor
 from .management import ColorManager, OcioColorSpace, describe_ocio_error, get_color_manager, load_ocio, ocio_errors
 
-
 _UNNAMED = "recolor_unnamed"
 """The name of a program until its content is known."""
 
@@ -96,8 +95,10 @@ def _name_by_content(program: ColorProgram) -> ColorProgram:
         values = np.asarray(table.values)
         digest.update(f"{table.linear} {values.shape}".encode() + values.tobytes())
     name = f"recolor_{digest.hexdigest()}"
-    tables = tuple(LookupTable(table.sampler.replace(_UNNAMED, name), table.linear, table.values) for table in program.tables)
-    return ColorProgram(name, parse(f"OpenColorIO/{name}", program.text.body.replace(_UNNAMED, name)), tables)
+    tables = [
+        LookupTable(table.sampler.replace(_UNNAMED, name), table.linear, table.values) for table in program.tables
+    ]
+    return ColorProgram(name, parse(f"OpenColorIO/{name}", program.text.body.replace(_UNNAMED, name)), tuple(tables))
 
 
 def _make_space_processor(change: SpaceChange, manager: ColorManager) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 import halation as hal
@@ -11,11 +12,12 @@ import OpenImageIO as oiio
 import pytest
 from exr_files import write_exr
 from halation import document
+from halation.color.gpu_programs import write_color_change
 from halation.color.management import get_color_manager
 from halation.errors import GraphError, InputError
 from halation.media import read_layer
 from halation.media.color_spaces import find_layer_spaces
-from halation.nodes import ColorSettings, Kind
+from halation.nodes import ColorSettings, Kind, LookupFile
 from halation.resources.sandbox import UNRESTRICTED
 from house_config import AP1_TO_REC709, studio, through
 
@@ -208,3 +210,17 @@ def test_names_that_nobody_knows(tmp_path, house):
     house.write_text(house.read_text().replace("colorspace: house texture, regex", "colorspace: gone, regex"))
     with pytest.raises((InputError, GraphError), match="gone"):
         hal.render(graph_of(tmp_path))
+
+
+def test_a_program_depends_on_the_content_of_a_table_and_not_on_its_place_or_date(tmp_path):
+    """It is part of the key by which a picture is found to be up to date."""
+    programs = []
+    for place, slope in (("a", 0.5), ("b", 0.5), ("c", 0.75)):
+        table = tmp_path / place / "look.cube"
+        table.parent.mkdir()
+        table.write_text(f"LUT_1D_SIZE 2\n0 0 0\n{slope} {slope} {slope}\n")
+        os.utime(table, (1e9 + len(programs), 1e9))
+        programs.append(write_color_change(LookupFile(str(table), False), UNRESTRICTED))
+    first, second, other = programs
+    assert first.function == second.function and first.text.body == second.text.body
+    assert other.function != first.function
