@@ -18,7 +18,7 @@ from changes import covers, list_changes
 TESTS = Path(__file__).parent
 LIST = TESTS / "slow_tests.txt"
 
-SLOW_ROOMS = ("authoring", "bench", "cli", "gui", "hostile", "law", "media", "presets", "regression")
+SLOW_ROOMS = ("authoring", "bench", "cli", "cluster", "gui", "hostile", "law", "media", "presets", "regression")
 """Rooms whose tests start programs, write large files or render whole presets, left out by `--fast`."""
 
 _FIRST_PARTS = tuple((room,) for room in SLOW_ROOMS)
