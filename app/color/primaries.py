@@ -14,6 +14,9 @@ from .management import LINEAR_REC709, ColorManager, OcioColorSpace, load_studio
 if TYPE_CHECKING:
     from ..resources.working_space import WorkingSpace
 
+REC709_LUMINANCE = (0.2126, 0.7152, 0.0722)
+"""How much red, green and blue of Rec.709 add to luminance, and of its display values to luma (ITU-R BT.709-6)."""
+
 _MATRIX_TOLERANCE = 2e-4
 """The largest difference of elements of two matrices that count as equal. Configs write matrices with 4 to 7 digits; 4
 digits change products with an inverse by 5e-5. The closest two known gamuts, AP1 and Rec.2020, differ by 0.045."""
@@ -27,6 +30,13 @@ def find_working_space(manager: ColorManager) -> WorkingSpace | None:
         UsageError: $OCIO names no config.
     """
     return None if manager.is_plain else _make_working_space(manager)
+
+
+def find_luminance_weights(manager: ColorManager) -> tuple[float, ...]:
+    """How much red, green and blue of the working space add to luminance, as shaders have it. Raises as
+    `find_working_space`."""
+    space = find_working_space(manager)
+    return space.luminance if space else REC709_LUMINANCE
 
 
 def find_chromaticities(manager: ColorManager, space: OcioColorSpace) -> tuple[float, ...]:

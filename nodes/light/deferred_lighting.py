@@ -161,7 +161,7 @@ class DeferredLighting(Filter):
         limited = self._limit_lights(draw, shining, surface["normal"], surface["place"], camera)
 
         def add_up(scattered: float, mirrored: float) -> Drawn:
-            numbers = {"share": (scattered, mirrored), **self._list_numbers(draw, camera)}
+            numbers: dict[str, Any] = {"share": (scattered, mirrored), **self._list_numbers(draw, camera)}
             light = draw(
                 "deferred_lighting_lit",
                 self.albedo,

@@ -26,6 +26,7 @@ from halation.compiler.ir import (
     HostCall,
     LoweredProgram,
     Op,
+    OpaqueProgram,
     Parameter,
     PictureShape,
     Placement,
@@ -97,7 +98,7 @@ def concrete(kind: type[Op] = Op) -> Iterator[type[Op]]:
     """All kinds of operations that programs hold."""
     for child in kind.__subclasses__():
         yield from concrete(child)
-        if child not in (SourceOp, FunctionOp):
+        if child not in (SourceOp, FunctionOp, OpaqueProgram):
             yield child
 
 

@@ -18,7 +18,7 @@ def write_external(
     `rounding` is the text of `as_half`, if the result is stored in half floats. What is added has names that begin with
     `halation_`, because the user's program may define any other name.
     """
-    fragment, vertex = root.text.fragment, root.text.vertex
+    fragment, vertex = root.program.fragment, root.program.vertex
     color = "halation_half(halation_pixel())" if rounding else "halation_pixel()"
     rounding = [line.replace("as_half", "halation_half") for line in rounding]
     end = [

@@ -25,7 +25,7 @@ equal pixels, and a field that a hash forgets would show stale pixels.
 from __future__ import annotations
 
 from .formula_call import FormulaCall
-from .host_call import HostCall
+from .opaque_programs import ExternalProgram, HostCall, OpaqueProgram
 from .operation import Op, SourceOp
 from .operations import (
     BLOCK,
@@ -35,7 +35,6 @@ from .operations import (
     Call,
     ColorCall,
     Convolve,
-    ExternalProgram,
     FunctionOp,
     Gather,
     HistoryRead,
@@ -68,6 +67,7 @@ __all__ = [
     "LoweredProgram",
     "Memory",
     "Op",
+    "OpaqueProgram",
     "Operand",
     "Parameter",
     "PictureShape",

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import ClassVar
 
-from halation.nodes import Affine, Edge, ShaderText, Size
+from halation.nodes import Affine, Edge, Size
 from msgspec.structs import replace
 
 from ...custom_nodes import strip_prefix
@@ -311,36 +311,6 @@ class Reduce(Op, frozen=True):
 
     def _find_footprint(self, ref: Ref, size: Size, region: Region) -> Region:
         return Region.of(_find_blocks(region.across, size[0]), _find_blocks(region.down, size[1]))
-
-
-class ExternalProgram(Op, frozen=True):
-    """A program that is no function of ours: its pictures by sampler, its uniforms by name."""
-
-    text: ShaderText
-    pictures: tuple[tuple[str, Ref], ...]
-    uniforms: tuple[tuple[str, UniformConstant], ...]
-
-    is_fragment_only: ClassVar[bool] = True
-
-    @property
-    def label(self) -> str:
-        return self.text.fragment.file.rpartition("/")[2]
-
-    @property
-    def is_indivisible(self) -> bool:
-        return True
-
-    def reads(self) -> Iterator[Ref]:
-        return (ref for _, ref in self.pictures)
-
-    def reads_whole(self, ref: Ref, size: Size) -> bool:
-        return True
-
-    def without_numbers(self) -> ExternalProgram:
-        return replace(self, uniforms=tuple((name, item.blank) for name, item in self.uniforms))
-
-    def find_user_files(self, library: Library) -> tuple[str, ...]:
-        return tuple(stage.file for stage in (self.text.fragment, self.text.vertex) if stage)
 
 
 class Raster(Op, frozen=True):

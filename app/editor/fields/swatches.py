@@ -5,6 +5,7 @@ from __future__ import annotations
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...color.primaries import REC709_LUMINANCE
 from ..theme.palette import RGB
 from ..theme.style import u32
 from ..toolkit.buttons import quiet_button
@@ -74,7 +75,7 @@ def draw_swatch(fields: Fields, rect: Rect, color: RGBA, hovered: bool = False) 
 
 def luma(color: RGB) -> float:
     """How bright a display color is, as a rough guide to what is legible on it."""
-    return 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2]
+    return sum(weight * part for weight, part in zip(REC709_LUMINANCE, color, strict=True))
 
 
 def _draw_bright_corner(fields: Fields, rect: Rect, color: RGBA) -> None:

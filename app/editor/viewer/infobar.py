@@ -9,6 +9,9 @@ import numpy as np
 from halation.nodes import Kind
 from imgui_bundle import imgui
 
+from ...color.management import ColorManager
+from ...color.primaries import REC709_LUMINANCE, find_luminance_weights
+from ...errors import HalationError
 from ...renderer.viewing.look import Look
 from ..theme.palette import RGB
 from ..theme.style import mix, u32, ui_scale
@@ -16,7 +19,6 @@ from ..toolkit.words import font
 from .geometry import Pixels, Sight
 from .looking import display_pixels
 from .measuring import format_pixel_number, hsv
-from .scopes import LUMINANCE
 
 if TYPE_CHECKING:
     from ...authoring.preview import DisplayedImage
@@ -90,14 +92,22 @@ def of_pixel(
         display_rgb = display_pixels(np.asarray([[values]], np.float32), look)[0, 0]
         eight = " ".join(f"{int(part * 255 + 0.5):3d}" for part in display_rgb)
         hue, saturation, value = hsv(tuple(float(part) for part in display_rgb))
-        light = float(np.dot(values[:3], LUMINANCE))
+        luminance = float(np.dot(values[:3], _find_weights(look.manager)))
         words += [
             Word("", (float(display_rgb[0]), float(display_rgb[1]), float(display_rgb[2])), 1.5),
             Word(eight, palette.dim, 0.5),
             Word(f"H{hue:4.0f} S{saturation:5.2f} V{value:5.2f}", palette.dim, 1.5),
-            Word(f"L {format_pixel_number(light)}", palette.dim, 1.5),
+            Word(f"L {format_pixel_number(luminance)}", palette.dim, 1.5),
         ]
     return words
+
+
+def _find_weights(manager: ColorManager) -> tuple[float, ...]:
+    """The weights of luminance: those of the working space, so that the number is what a luminance node computes."""
+    try:
+        return find_luminance_weights(manager)
+    except HalationError:  # another place of the window says that the space cannot be used
+        return REC709_LUMINANCE
 
 
 def draw_line(context: ViewerContext, name: str, words: list[Word]) -> None:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...color.primaries import REC709_LUMINANCE
+
 Array = np.ndarray
 
 BINS = 256
-LUMINANCE = (0.2126, 0.7152, 0.0722)
-"""BT.709."""
 
 CHROMA = 0.5 * 1.06
 """The range of Cb and Cr in the vectorscope, from minus to plus this: all display colors, with a margin of 6 %."""
@@ -38,7 +38,7 @@ def rgb_of(pixels: Array) -> Array:
 
 def luminance(rgb: Array) -> Array:
     """BT.709 luma of encoded color, luminance of linear color: [h, w]."""
-    return rgb @ np.asarray(LUMINANCE, np.float32)
+    return rgb @ np.asarray(REC709_LUMINANCE, np.float32)
 
 
 def histogram(rgb: Array, low: float = 0.0, high: float = 1.0) -> Array:
@@ -82,7 +82,7 @@ def parade(rgb: Array, columns: int, rows: int, low: float = 0.0, high: float = 
 def chroma(rgb: Array) -> Array:
     """BT.709 Cb and Cr of encoded color [..., 3]: [..., 2], each -0.5..0.5 for colors of the display."""
     red, green, blue = np.moveaxis(np.asarray(rgb, np.float32), -1, 0)
-    luma = LUMINANCE[0] * red + LUMINANCE[1] * green + LUMINANCE[2] * blue
+    luma = REC709_LUMINANCE[0] * red + REC709_LUMINANCE[1] * green + REC709_LUMINANCE[2] * blue
     return np.stack([(blue - luma) / 1.8556, (red - luma) / 1.5748], axis=-1)
 
 

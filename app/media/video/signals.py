@@ -11,6 +11,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from ...color.primaries import REC709_LUMINANCE
 from ...color.transforms import decode_srgb
 from ...errors import InputError
 
@@ -18,7 +19,7 @@ Array = np.ndarray
 
 LUMA: Mapping[int, tuple[float, float]] = MappingProxyType(
     {
-        1: (0.2126, 0.0722),
+        1: (REC709_LUMINANCE[0], REC709_LUMINANCE[2]),
         4: (0.30, 0.11),
         5: (0.299, 0.114),
         6: (0.299, 0.114),
