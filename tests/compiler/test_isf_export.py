@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from halation.compiler.ir import PictureShape, UniformConstant
 from halation.compiler.isf import IsfExport, export_isf
-from halation.compiler.isf.affine import Knob, find_length_formula, fit_slopes, take_apart
+from halation.compiler.isf.affine import FittedKnob, find_length_formula, fit_slopes, take_apart
 from halation.compiler.isf.controls import find_controls
 from halation.custom_nodes import CustomNode
 from halation.graph import Control, Graph, Input, Output, Port, Settings
@@ -53,7 +53,7 @@ def exported(graph: Graph, size: tuple[int, int] = (64, 48)) -> IsfExport:
 
 
 def both(
-    renderer: Renderer, graph: Graph, text: str, size: tuple[int, int], frame: int = 1, **values: Any
+    renderer: Renderer, graph: Graph, text: str, size: tuple[int, int], frame: int = 1, /, **values: Any
 ) -> tuple[Array, Array]:
     """What the graph makes, and what the shader makes; pictures reach above white."""
     kind: type[CustomNode] = shader(text)
@@ -111,6 +111,16 @@ def test_controls_become_inputs(renderer: Renderer) -> None:
         for name, value in values.items():
             changed = changed.set_control(name, value)
         assert close(both(renderer, changed, found.text, (64, 48), **values), 1e-3)
+
+
+@pytest.mark.parametrize("name", ["width", "height", "frame", "canvas"])
+def test_a_control_may_have_the_name_of_what_the_shader_follows_anyway(renderer: Renderer, name: str) -> None:
+    """The size of the picture and the frame are numbers that a shader follows: they must not be taken for controls."""
+    graph = chain(made("exposure"), made("film_grain")).add_control(name, Control(Port("n0", "stops")))
+    found = exported(graph)
+    assert not found.notes and json.loads(found.text[2 : found.text.index("*/")])["INPUTS"][1]["NAME"] == name
+    changed = graph.set_control(name, 1.5)
+    assert close(both(renderer, changed, found.text, (83, 61), 3, **{name: 1.5}), 1e-2)
 
 
 def test_a_control_that_changes_what_is_computed_keeps_its_value(renderer: Renderer) -> None:
@@ -171,9 +181,9 @@ def shape(width: int) -> PictureShape:
 )
 def test_slopes_are_those_of_straight_lines(lower_at: Any, resizes: bool, slopes: list[float] | None) -> None:
     """The numbers of a program as known functions of a knob."""
-    knob = Knob("x", "x", 1.0, 1.0, 0.5, resizes=resizes)
+    knob = FittedKnob("x", "x", 1.0, 1.0, 0.5, resizes=resizes)
     base = take_apart(lower_at(knob.base))
-    found = fit_slopes(lambda point: lower_at(point["x"]), base, knob)
+    found = fit_slopes(lambda point: (at := lower_at(point["x"])) and take_apart(at), base, knob)
     assert found == (None if slopes is None else pytest.approx(slopes))
 
 

@@ -1,4 +1,4 @@
-"""Finds how the numbers of a lowered graph follow a control, by lowering the graph again with other values.
+"""Finds how the numbers of a lowered graph follow a knob, from samples of the graph at other values.
 
 The package says why. Numbers are fitted by straight lines (`fit_slopes`), sizes by fractions of the picture's size
 (`find_length_formula`).
@@ -6,7 +6,7 @@ The package says why. Numbers are fitted by straight lines (`fit_slopes`), sizes
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, cast
 
@@ -16,6 +16,7 @@ from msgspec import Struct
 from ...resources.record import Record
 from ..areas import Neighborhood
 from ..ir import LoweredProgram, PictureShape, UniformConstant
+from ..knobs import Point
 
 TOLERANCE = 1e-5
 """Relative difference that counts as rounding. Chosen by judgement: constants are computed in double precision and
@@ -27,7 +28,7 @@ pixel for 4096 pixels."""
 
 
 @dataclass(frozen=True)
-class Knob:
+class FittedKnob:
     """A number that the graph depends on. `text` is its GLSL in the shader, `rest` its value in the graph.
 
     Samples are taken at `base` and in steps of `step` from it. `base` lies beside `rest`: at its value in the graph a
@@ -49,18 +50,15 @@ class Knob:
         return self.base + self.step * (1.0 if self.samples == 1 else 5.0)
 
 
-Point = Mapping[str, float]
-"""Values of knobs by name."""
-
-LoweringFunction = Callable[[Point], LoweredProgram | None]
-"""The program with knobs at other values; None where there is none."""
-
-
 @dataclass
 class Anatomy:
-    """A program taken apart: its structure, its numbers, its sizes, and where the numbers of each constant begin."""
+    """A program taken apart: its structure, its numbers, its sizes, and where the numbers of each constant begin.
 
-    skeleton: object
+    Constants are known by their `id`, so the program is kept.
+    """
+
+    program: LoweredProgram
+    structure: object = None
     numbers: list[float] = field(default_factory=list[float])
     sizes: list[Size] = field(default_factory=list[Size])
     places: dict[int, int] = field(default_factory=dict[int, int])
@@ -68,8 +66,8 @@ class Anatomy:
 
 def take_apart(program: LoweredProgram) -> Anatomy:
     """The structure, numbers and sizes of a program."""
-    parts = Anatomy(None)
-    parts.skeleton = (*(_walk(op, parts) for op in program.ops), tuple(program.outputs.items()))
+    parts = Anatomy(program)
+    parts.structure = (*(_walk(op, parts) for op in program.ops), tuple(program.outputs.items()))
     return parts
 
 
@@ -98,7 +96,7 @@ class LinearModel:
     """Every number as base + sum of slopes + sum of products of two knobs."""
 
     base: Anatomy
-    knobs: dict[str, Knob]
+    knobs: dict[str, FittedKnob]
     slopes: dict[str, list[float]] = field(default_factory=dict[str, list[float]])
     products: dict[tuple[str, str], list[float]] = field(default_factory=dict[tuple[str, str], list[float]])
 
@@ -145,13 +143,12 @@ class LinearModel:
         return f"({' + '.join(parts)})"
 
 
-def fit_slopes(lower_at: LoweringFunction, base: Anatomy, knob: Knob) -> list[float] | None:
+def fit_slopes(take: Callable[[Point], Anatomy | None], base: Anatomy, knob: FittedKnob) -> list[float] | None:
     """How fast every number grows with a knob; None if the structure changes or a number follows no straight line."""
     columns: list[list[float]] = []
     for step in range(1, knob.samples + 1):
-        program = lower_at({knob.name: knob.base + step * knob.step})
-        sample = take_apart(program) if program else None
-        if sample is None or sample.skeleton != base.skeleton or (sample.sizes != base.sizes and not knob.resizes):
+        sample = take({knob.name: knob.base + step * knob.step})
+        if sample is None or sample.structure != base.structure or (sample.sizes != base.sizes and not knob.resizes):
             return None
         columns.append(sample.numbers)
     slopes = [(end - start) / knob.step for end, start in zip(columns[0], base.numbers, strict=True)]

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from halation.nodes import ItemSet, Scalar, Value
+from halation.nodes import Value
 
-from ...graph import Graph, find_declaration
-from .affine import Knob
+from ...graph import Graph
+from ..knobs import Knob, KnobControl, find_knob_controls
+from .affine import FittedKnob
 
 _ODD = re.compile(r"[^A-Za-z0-9]+")
 Section = dict[str, Any]
@@ -18,19 +19,11 @@ Section = dict[str, Any]
 
 @dataclass(frozen=True)
 class IsfControl:
-    """A control with the value that it sets, its entry in the head of the shader, and a knob for each component."""
+    """A control with its entry in the head of the shader, and the knobs that are fitted."""
 
-    name: str
-    value: Value
+    control: KnobControl
     entry: Section
-    knobs: tuple[Knob, ...]
-
-    def value_at(self, point: Mapping[str, float]) -> Scalar:
-        """The value of the control at a point."""
-        parts = tuple(point.get(knob.name, knob.rest) for knob in self.knobs)
-        if self.value.length > 1:
-            return parts
-        return {"bool": bool, "int": round}.get(self.value.type, float)(parts[0])
+    knobs: tuple[FittedKnob, ...]
 
 
 def make_identifier(name: str, used_names: Iterable[str]) -> str:
@@ -46,31 +39,23 @@ def make_identifier(name: str, used_names: Iterable[str]) -> str:
 
 def find_controls(graph: Graph, used_names: Iterable[str]) -> tuple[list[IsfControl], list[str]]:
     """The controls that can become inputs, and a sentence on each of the others."""
-    names, controls, notes = set(used_names), list[IsfControl](), list[str]()
-    for name, control in graph.controls.items():
-        target = control.target
-        item = graph.nodes.get(target.node)
-        value = find_declaration(item, target.socket) if item else None
-        rest = graph.value(target) if value else None
-        if value is None or rest is None or isinstance(rest, ItemSet):
-            continue
-        fits = value.type in ("float", "int", "bool", "color") or (value.type == "vector" and value.length == 2)
-        if not fits:
-            notes.append(f"control '{name}' keeps its value: the format has no input for a {value.type} like it")
-            continue
-        if target in graph.animation or target in graph.links:
-            notes.append(f"control '{name}' is no input: it is animated or linked")
-            continue
-        shader_name = make_identifier(name, names)
+    names, controls = set(used_names), list[IsfControl]()
+    turnable, notes = find_knob_controls(graph, _has_input)
+    for control in turnable:
+        shader_name = make_identifier(control.name, names)
         names.add(shader_name)
-        controls.append(_make_control(shader_name, name, control.label or value.label or name, value, rest))
+        controls.append(_make_control(shader_name, control))
     return controls, notes
 
 
-def _make_control(shader_name: str, name: str, label: str, value: Value, rest: Scalar) -> IsfControl:
-    parts = list(rest) if isinstance(rest, tuple) else [float(rest)]
-    low, high = _find_range(value, parts)
-    entry: Section = {"NAME": shader_name, "LABEL": label}
+def _has_input(value: Value) -> bool:
+    return value.type in ("float", "int", "bool", "color") or (value.type == "vector" and value.length == 2)
+
+
+def _make_control(shader_name: str, control: KnobControl) -> IsfControl:
+    value, parts = control.value, [knob.rest for knob in control.knobs]
+    low, high = control.knobs[0].low, control.knobs[0].high
+    entry: Section = {"NAME": shader_name, "LABEL": control.label or control.name}
     if value.type == "color":
         straight = [*map(_encode_light, parts[:3]), *parts[3:], 1.0]
         entry |= {"TYPE": "color", "DEFAULT": straight[:4]}
@@ -81,32 +66,23 @@ def _make_control(shader_name: str, name: str, label: str, value: Value, rest: S
         entry |= {"TYPE": "point2D", "DEFAULT": place, "MIN": [low, low], "MAX": [high, high]}
         texts = [f"@{shader_name}.x", f"(1.0 - @{shader_name}.y)" if flips else f"@{shader_name}.y"]
     elif value.type == "bool":
-        entry |= {"TYPE": "bool", "DEFAULT": bool(rest)}
+        entry |= {"TYPE": "bool", "DEFAULT": bool(parts[0])}
         texts = [f"(@{shader_name} ? 1.0 : 0.0)"]
     else:
         entry |= {"TYPE": "float", "DEFAULT": parts[0], "MIN": low, "MAX": high}
         texts = [f"@{shader_name}" if value.type == "float" else f"floor(@{shader_name} + 0.5)"]
-    knobs = tuple(
-        _make_knob(f"{name}.{at}" if len(parts) > 1 else name, text, value, part, low, high)
-        for at, (part, text) in enumerate(zip(parts, texts, strict=False))
-    )
-    return IsfControl(name, value, entry, knobs)
+    knobs = tuple(_make_knob(knob, text, value) for knob, text in zip(control.knobs, texts, strict=False))
+    return IsfControl(control, entry, knobs)
 
 
-def _make_knob(name: str, text: str, value: Value, rest: float, low: float, high: float) -> Knob:
+def _make_knob(knob: Knob, text: str, value: Value) -> FittedKnob:
+    name, rest = knob.name, knob.rest
     if value.type == "bool":
-        return Knob(name, text, rest, rest, 1.0 - 2.0 * rest, 1)
+        return FittedKnob(name, text, rest, rest, 1.0 - 2.0 * rest, 1)
     # A part of the range that no node has as a special value: at round values nodes may do nothing.
-    step = 1.0 if value.type == "int" else (high - low) * 0.0371
-    step = -step if rest + 6.0 * step > min(high, value.maximum) else step
-    return Knob(name, text, rest, rest + step, step)
-
-
-def _find_range(value: Value, parts: list[float]) -> tuple[float, float]:
-    low, high = max(value.low, value.minimum), min(value.high, value.maximum)
-    if low == float("-inf") or high == float("inf") or low >= high:
-        low, high = 0.0, 1.0
-    return min(low, *parts), max(high, *parts)
+    step = 1.0 if value.type == "int" else (knob.high - knob.low) * 0.0371
+    step = -step if rest + 6.0 * step > min(knob.high, value.maximum) else step
+    return FittedKnob(name, text, rest, rest + step, step)
 
 
 def _encode_light(light: float) -> float:

@@ -17,12 +17,13 @@ from ...resources.working_space import WorkingSpace
 from .. import graph_library
 from ..fusion.fuse import fuse
 from ..ir import LoweredProgram, Ref
+from ..knobs import FRAME, GraphSampler, Point, find_control_name
 from ..lowering.lower import lower
 from ..request import Request
 from ..target import NULL
-from .affine import Knob, Point
+from .affine import Anatomy, FittedKnob, take_apart
 from .controls import Section, find_controls, make_identifier
-from .model import FRAME, HEIGHT, WIDTH, IsfModel, ModelSearch
+from .model import HEIGHT, WIDTH, IsfModel, ModelSearch
 from .passes import find_obstacles
 from .writing import IsfWriter
 
@@ -101,10 +102,11 @@ class _IsfExporter:
         self.pictures = _name_pictures([name for name, end in graph.inputs.items() if end.kind is Kind.IMAGE])
         self.controls, notes = find_controls(graph, self.pictures.values())
         self.notes = notes
+        self.sampler = GraphSampler(graph, [item.control for item in self.controls], self._lower)
 
     def export(self, doc: str) -> IsfExport:
         """The shader, or why there is none."""
-        program = self._lower_at({})
+        program = self.sampler.take({}).program
         passes = fuse(program, NULL, gathers=False)
         obstacles = [*self._find_data_inputs(program), *find_obstacles(program, passes, self._find_sources(program))]
         count = sum(len(fused.writes) for fused in passes)
@@ -112,7 +114,7 @@ class _IsfExporter:
             obstacles.append(("", f"takes {count} passes: {MAX_PASSES} are the most"))
         if obstacles:
             return IsfExport("", (), tuple(dict.fromkeys(obstacles)))
-        model = ModelSearch(self._lower_at, self._make_knobs(), self.size).find_model()
+        model = ModelSearch(self.sampler, self._make_knobs(), self.size).find_model()
         self._add_notes(model)
         inputs: list[Section] = [{"NAME": name, "TYPE": "image"} for name in self.pictures.values()]
         inputs += [
@@ -136,30 +138,28 @@ class _IsfExporter:
         comment = json.dumps(head, indent=2).replace("*/", "*\\/")
         return IsfExport(f"/*{comment}*/\n\n{text}", tuple(self.notes), ())
 
-    def _lower_at(self, point: Point) -> LoweredProgram:
-        """The graph as operations, at values of knobs."""
-        graph = self.graph
-        for control in self.controls:
-            graph = graph.set_control(control.name, control.value_at(point))
+    def _lower(self, graph: Graph, point: Point) -> Anatomy:
+        """The graph as operations, at the frame and the size of a point."""
         size = (round(point.get(WIDTH, self.size[0])), round(point.get(HEIGHT, self.size[1])))
         bindings = {name: Picture(name, "", Kind.IMAGE, 4, in_memory=True) for name in self.pictures}
         request = Request({"made": self.target}, bindings, size, frame=round(point.get(FRAME, self.first)))
-        return lower(graph, request, self.library, _BoundProvider(self.provider, size)).program
+        return take_apart(lower(graph, request, self.library, _BoundProvider(self.provider, size)).program)
 
-    def _make_knobs(self) -> dict[str, Knob]:
+    def _make_knobs(self) -> dict[str, FittedKnob]:
         width, height = (float(side) for side in self.size)
         return {
             **{knob.name: knob for control in self.controls for knob in control.knobs},
-            FRAME: Knob(FRAME, f"float(@FRAMEINDEX + {self.first})", self.first, self.first, 1.0, 3),
-            WIDTH: Knob(WIDTH, "@halation_canvas.x", width, width, 96.0, resizes=True),
-            HEIGHT: Knob(HEIGHT, "@halation_canvas.y", height, height, 96.0, resizes=True),
+            FRAME: FittedKnob(FRAME, f"float(@FRAMEINDEX + {self.first})", self.first, self.first, 1.0, 3),
+            WIDTH: FittedKnob(WIDTH, "@halation_canvas.x", width, width, 96.0, resizes=True),
+            HEIGHT: FittedKnob(HEIGHT, "@halation_canvas.y", height, height, 96.0, resizes=True),
         }
 
     def _add_notes(self, model: IsfModel) -> None:
         """Say what the shader does not follow."""
         for control in self.controls:
             if held := [knob.name for knob in control.knobs if knob.name in model.held_knobs]:
-                self.notes.append(f"control '{held[0]}' keeps its value: it changes more than numbers")
+                name = find_control_name(held[0])
+                self.notes.append(f"control '{name}' keeps its value: it changes more than numbers")
         if FRAME in model.held_knobs:
             self.notes.append(f"it shows frame {self.first} at all times: more than numbers change with time")
         if WIDTH in model.held_knobs:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from halation.nodes import Size
 
 from ...errors import HalationError
 from ..ir import LoweredProgram, UniformConstant
-from .affine import Anatomy, Knob, LinearModel, Point, are_close, find_length_formula, fit_slopes, take_apart
+from ..knobs import FRAME, GraphSampler, Point
+from .affine import Anatomy, FittedKnob, LinearModel, are_close, find_length_formula, fit_slopes
 
-WIDTH, HEIGHT, FRAME = "width", "height", "frame"
+WIDTH, HEIGHT = "canvas.width", "canvas.height"
+"""The names of the knobs of the picture's size. No control can have a name with a dot."""
 
 SizeFormulas = Mapping[Size, tuple[str, str]]
 """Sizes of pictures as formulas of the size of the exported picture, which is written `{}`."""
@@ -49,8 +51,8 @@ class IsfModel:
 class ModelSearch:
     """Fits knobs; one that does not fit is held at its value in the graph, and the search starts again without it."""
 
-    lower_at: Callable[[Point], LoweredProgram]
-    knobs: dict[str, Knob]
+    sampler: GraphSampler[Anatomy]
+    knobs: dict[str, FittedKnob]
     size: Size
     held_knobs: list[str] = field(default_factory=list[str])
 
@@ -58,13 +60,13 @@ class ModelSearch:
         """Fit as many knobs as possible. Raises the errors of compiling the graph at its own values."""
         while True:
             try:
-                program = self.lower_at(self._find_base())
+                base = self.sampler.take(self._find_base())
             except HalationError:
                 if not self.knobs:
                     raise
                 self._hold_knob(next(reversed(self.knobs)))
                 continue
-            model = LinearModel(take_apart(program), dict(self.knobs))
+            model = LinearModel(base, dict(self.knobs))
             failed = self._fit_slopes(model)
             sizes: SizeFormulas | None = None
             if WIDTH in self.knobs and not failed:
@@ -72,17 +74,14 @@ class ModelSearch:
                 failed = WIDTH if sizes is None else ""
             failed = failed or self._fit_products(model)
             if not failed:
-                return IsfModel(program, model, sizes or {}, self.held_knobs)
+                return IsfModel(base.program, model, sizes or {}, self.held_knobs)
             self._hold_knob(failed)
 
     def _find_base(self) -> dict[str, float]:
         return {name: knob.base for name, knob in self.knobs.items()}
 
-    def _try_lower(self, point: Point) -> LoweredProgram | None:
-        try:
-            return self.lower_at({**self._find_base(), **point})
-        except HalationError:
-            return None
+    def _try_take(self, point: Point) -> Anatomy | None:
+        return self.sampler.try_take({**self._find_base(), **point})
 
     def _hold_knob(self, name: str) -> None:
         for held_name in (WIDTH, HEIGHT) if name in (WIDTH, HEIGHT) else (name,):
@@ -92,7 +91,7 @@ class ModelSearch:
     def _fit_slopes(self, model: LinearModel) -> str:
         """Fit each knob alone; the name of the first knob that does not fit, or ""."""
         for name, knob in self.knobs.items():
-            slopes = fit_slopes(self._try_lower, model.base, knob)
+            slopes = fit_slopes(self._try_take, model.base, knob)
             if slopes is None:
                 return name
             model.slopes[name] = slopes
@@ -118,9 +117,8 @@ class ModelSearch:
 
     def _find_numbers(self, model: LinearModel, point: Point) -> list[float] | None:
         """The numbers at a point; None if the structure of the program is another one there."""
-        program = self._try_lower(point)
-        sample = take_apart(program) if program else None
-        return sample.numbers if sample is not None and sample.skeleton == model.base.skeleton else None
+        sample = self._try_take(point)
+        return sample.numbers if sample is not None and sample.structure == model.base.structure else None
 
     def _find_size_formulas(self, base: Anatomy) -> SizeFormulas | None:
         """The sizes of all pictures as formulas; None if some size has none.
@@ -130,8 +128,8 @@ class ModelSearch:
         steps = (0, 37, 91, 192)
         samples: list[Anatomy] = []
         for step in steps:
-            program = self._try_lower({WIDTH: self.size[0] + step, HEIGHT: self.size[1] + step})
-            if program is None or (sample := take_apart(program)).skeleton != base.skeleton:
+            sample = self._try_take({WIDTH: self.size[0] + step, HEIGHT: self.size[1] + step})
+            if sample is None or sample.structure != base.structure:
                 return None
             samples.append(sample)
         texts: dict[Size, tuple[str, str]] = {}

@@ -4,7 +4,7 @@ A plan of the compiler holds all that a renderer does for one frame. A package h
 controls, because the compiler is not there when it runs. Nothing here knows what a node does. The graph is planned
 again and again with other values of its controls, and the plans are compared:
 
-- `knobs` are the numbers that a user may change: components of controls, and the frame.
+- `compiler.knobs` are the numbers that a user may change: components of controls, and the frame.
 - `planning` plans the graph at points; `sampling` takes plans apart, and chooses more points where a number bends.
 - A control that changes only numbers gives each uniform a curve: a polygon through the samples (`curves`). Where two
   knobs change one number, their curves are added or multiplied, whichever predicts other points.

@@ -6,14 +6,15 @@ import itertools
 from collections.abc import Mapping, Sequence
 from functools import cache
 
+from halation.nodes import Value
 from msgspec import Struct
 
 from ...compiler import Plan
+from ...compiler.knobs import FRAME, Knob, KnobControl, Point, find_control_name
 from ...version import VERSION
 from ..order import ExportOrder
 from .curves import PairSamples, Record, find_needed_places
 from .display import write_display_program
-from .knobs import FRAME, PackageControl, PackageKnob, Point, find_control_name
 from .parts import SharedParts, VariantSamples
 from .planning import OUTPUT, Phase, PointPlanner
 from .sampling import Sample, is_number_table
@@ -54,14 +55,14 @@ class _Assembly:
         """
         planner = self.planner
         first, last = planner.first, planner.last
-        phases = [Phase({})]
-        opening = planner.plan({FRAME: first}, phases[0])
+        phases = [planner.begin_phase({})]
+        opening = phases[0].take({FRAME: first}).plan
         if opening.memories:
-            phases.append(Phase(opening.memories))
+            phases.append(planner.begin_phase(opening.memories))
         start = first + len(phases) - 1
         knobs = [knob for control in planner.controls for knob in control.knobs]
         if last > start:
-            knobs.append(PackageKnob(FRAME, start, start, last, is_whole=True))
+            knobs.append(Knob(FRAME, start, start, last, is_whole=True))
         base = {FRAME: float(start), **planner.find_base(knobs, phases[-1])}
         self.samples = {knob.name: planner.sample_knob(knob, base, phases[-1]) for knob in knobs}
         found_axes = (find_axis(knob.name, base[knob.name], self.samples[knob.name]) for knob in knobs)
@@ -78,9 +79,7 @@ class _Assembly:
         notes = (*planner.notes, *_describe_held(held_axes), *self._describe_poor())
         return Package(document, notes, tuple(self.parts.programs), tuple(self.parts.blobs))
 
-    def _write_plans(
-        self, axes: Sequence[VariantAxis], knobs: list[PackageKnob], base: Point, phase: Phase
-    ) -> list[Record]:
+    def _write_plans(self, axes: Sequence[VariantAxis], knobs: list[Knob], base: Point, phase: Phase) -> list[Record]:
         """The plans of all variants; the span of the last axis changes fastest."""
         names = [axis.knob for axis in axes]
         return [
@@ -88,12 +87,12 @@ class _Assembly:
             for spans in itertools.product(*(axis.spans for axis in axes))
         ]
 
-    def _write_variant(self, spans: Mapping[str, Span], knobs: list[PackageKnob], base: Point, phase: Phase) -> Record:
+    def _write_variant(self, spans: Mapping[str, Span], knobs: list[Knob], base: Point, phase: Phase) -> Record:
         """One plan: the passes within spans of the knobs that change them, with curves for all numbers."""
         planner = self.planner
         names = {knob.name for knob in knobs}  # the first frame has no knob of time
         middle = {**base, **{name: span.middle for name, span in spans.items() if name in names}}
-        rest = planner.take(middle, phase)
+        rest = phase.take(middle)
         by_knob: dict[str, dict[float, Sample]] = {}
         for knob in knobs:
             places = list(self.samples[knob.name])
@@ -194,14 +193,19 @@ def _describe_held(axes: Sequence[VariantAxis]) -> list[str]:
     ]
 
 
-def _write_control(control: PackageControl) -> Record:
+def _choose_widget(value: Value) -> str:
+    """How a control is changed: slider, whole, switch, choice, color or point."""
+    return {"float": "slider", "int": "whole", "bool": "switch", "vector": "point"}.get(value.type, value.type)
+
+
+def _write_control(control: KnobControl) -> Record:
     value = control.value
     knobs = [{"name": knob.name, "rest": knob.rest, "low": knob.low, "high": knob.high} for knob in control.knobs]
     record: Record = {
         "name": control.name,
-        "label": control.label,
+        "label": control.label or control.name.replace("_", " ").capitalize(),
         "doc": control.doc,
-        "kind": control.widget,
+        "kind": _choose_widget(value),
         "unit": value.unit or "",
         "knobs": knobs,
     }

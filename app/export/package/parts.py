@@ -11,11 +11,11 @@ import numpy as np
 from halation.nodes import Kind
 
 from ...compiler import Plan, Upload
+from ...compiler.knobs import FRAME
 from ...resources.color_program import LookupTable
 from ...resources.mesh import Mesh
 from ...resources.picture import Picture
 from .curves import PairSamples, Record, add_grids, measure_error, write_slot
-from .knobs import FRAME
 from .sampling import LoadFunction, Sample
 
 POOR_FIT = 0.02

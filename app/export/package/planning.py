@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
+from halation.nodes import Value
 
 from ...compiler import Memory, Plan, Planner, Request, Target
+from ...compiler.knobs import FRAME, GraphSampler, Knob, Point, find_knob_controls
 from ...errors import GraphError, describe_owner
 from ...graph import Graph, Port
 from ...inputs.provider import MediaProvider
 from ..order import ExportOrder
 from .curves import PairSamples
-from .knobs import FRAME, PackageKnob, Point, find_controls
 from .sampling import BESIDE, KnobSampler, Sample, take_apart
 from .variants import Span
 
@@ -37,10 +38,14 @@ CHECKS = 4
 
 @dataclass(eq=False)
 class Phase:
-    """The first frame, or all frames after it: what nodes remember, and the planner that follows its own plans."""
+    """The first frame, or all frames after it: what nodes remember, and samples of the graph with these memories."""
 
     memories: Mapping[Port, Memory]
-    planner: Planner = field(default_factory=Planner)
+    sampler: GraphSampler[Sample]
+
+    def take(self, point: Point) -> Sample:
+        """The sample at a point. Raises the errors of planning the graph."""
+        return self.sampler.take(point)
 
 
 class PointPlanner:
@@ -49,58 +54,51 @@ class PointPlanner:
     def __init__(self, order: ExportOrder) -> None:
         self.order, self.graph = order, order.graph
         self.provider = MediaProvider(sandbox=order.sandbox)
-        self.controls, self.notes = find_controls(self.graph)
+        self.controls, self.notes = find_knob_controls(self.graph, _has_input)
         self._bindings = self.provider.bind(self.graph, order.inputs)
         self.first, self.last = self._find_frames()
-        self._samples: dict[object, Sample] = {}
         self.remembers = False
         """Whether nodes remember earlier frames."""
 
-    def plan(self, point: Point, phase: Phase) -> Plan:
-        """The plan at a point. Raises GraphError where no other program could run it."""
-        graph: Graph = self.graph
-        for control in self.controls:
-            if any(knob.name in point for knob in control.knobs):
-                graph = graph.set_control(control.name, control.value_at(point))
-        frame, order = round(point.get(FRAME, self.first)), self.order
-        request = Request({OUTPUT: order.target}, self._bindings, order.size, frame=frame, memories=phase.memories)
-        plan = phase.planner.plan(graph, request, self.provider, target=TARGET)
-        _refuse_unsuitable(plan)
-        self.remembers = self.remembers or bool(plan.memories)
-        return plan
+    def begin_phase(self, memories: Mapping[Port, Memory]) -> Phase:
+        """A phase with these memories. It has a planner of its own, which is fast where plans follow each other."""
+        planner = Planner()
 
-    def take(self, point: Point, phase: Phase) -> Sample:
-        """The sample at a point."""
-        key = (id(phase), *sorted(point.items()))
-        if key not in self._samples:
-            self._samples[key] = take_apart(self.plan(point, phase), self.provider.load_pixels)
-        return self._samples[key]
+        def plan(graph: Graph, point: Point) -> Sample:
+            frame, order = round(point.get(FRAME, self.first)), self.order
+            request = Request({OUTPUT: order.target}, self._bindings, order.size, frame=frame, memories=memories)
+            plan = planner.plan(graph, request, self.provider, target=TARGET)
+            _refuse_unsuitable(plan)
+            self.remembers = self.remembers or bool(plan.memories)
+            return take_apart(plan, self.provider.load_pixels)
 
-    def take_like(self, rest: Sample, point: Point, knob: PackageKnob, phase: Phase) -> Sample | None:
+        return Phase(memories, GraphSampler(self.graph, self.controls, plan))
+
+    def take_like(self, rest: Sample, point: Point, knob: Knob, phase: Phase) -> Sample | None:
         """The sample at a point, or beside it where a node is left out; None where the passes are others anyway."""
-        sample = self.take(point, phase)
+        sample = phase.take(point)
         if sample.structure != rest.structure and not knob.is_whole:
-            sample = self.take({**point, knob.name: _step_aside(point[knob.name], knob)}, phase)
+            sample = phase.take({**point, knob.name: _step_aside(point[knob.name], knob)})
         return sample if sample.structure == rest.structure else None
 
-    def find_base(self, knobs: list[PackageKnob], phase: Phase) -> dict[str, float]:
+    def find_base(self, knobs: list[Knob], phase: Phase) -> dict[str, float]:
         """A point near the settings of the graph at which no node is left out."""
         base = {knob.name: knob.rest for knob in knobs}
         for knob in knobs:
             if knob.is_whole or knob.high == knob.low:
                 continue
             beside = {**base, knob.name: _step_aside(knob.rest, knob)}
-            if self.take(base, phase).structure != self.take(beside, phase).structure:
+            if phase.take(base).structure != phase.take(beside).structure:
                 base = beside
         return base
 
-    def sample_knob(self, knob: PackageKnob, base: Point, phase: Phase) -> dict[float, Sample]:
+    def sample_knob(self, knob: Knob, base: Point, phase: Phase) -> dict[float, Sample]:
         """Samples over the range of a knob, while all others rest."""
         is_dense = knob.name == FRAME and bool(self.graph.animation)
-        return KnobSampler(lambda point: self.take(point, phase), base, knob, is_dense).sample_range()
+        return KnobSampler(phase.sampler.try_take, base, knob, is_dense).sample_range()
 
     def sample_checks(
-        self, middle: Point, knobs: list[PackageKnob], spans: Mapping[str, Span], rest: Sample, phase: Phase
+        self, middle: Point, knobs: list[Knob], spans: Mapping[str, Span], rest: Sample, phase: Phase
     ) -> list[tuple[Point, Sample]]:
         """Samples at points where all knobs are elsewhere."""
         random = np.random.default_rng(7)
@@ -111,7 +109,7 @@ class PointPlanner:
                 span = spans.get(knob.name)
                 low, high = (span.low, span.high) if span else (knob.low, knob.high)
                 point[knob.name] = knob.snap(low + (high - low) * (0.1 + 0.8 * random.random()))
-            sample = self.take(point, phase)
+            sample = phase.take(point)
             if sample.structure == rest.structure:
                 checks.append((point, sample))
         return checks
@@ -121,7 +119,7 @@ class PointPlanner:
     ) -> PairSamples:
         """Samples at combinations of two knobs, given with the values that each may have."""
         (one, xs), (other, ys) = ((name, _thin([*places, middle[name]])) for name, places in (first, second))
-        rows = [[self.take({**middle, one: x, other: y}, phase) for y in ys] for x in xs]
+        rows = [[phase.take({**middle, one: x, other: y}) for y in ys] for x in xs]
         return xs, ys, [[sample if sample.structure == rest.structure else None for sample in row] for row in rows]
 
     def _find_frames(self) -> tuple[int, int]:
@@ -135,7 +133,11 @@ class PointPlanner:
         return first, min(last, first + MAX_FRAMES - 1)
 
 
-def _step_aside(x: float, knob: PackageKnob) -> float:
+def _has_input(value: Value) -> bool:
+    return value.type in ("float", "int", "bool", "color", "vector", "choice")
+
+
+def _step_aside(x: float, knob: Knob) -> float:
     step = (knob.high - knob.low) * BESIDE
     return x + step if x + step <= knob.high else x - step
 

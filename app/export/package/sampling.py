@@ -11,9 +11,8 @@ from halation.nodes import Uniform
 from msgspec import Struct
 
 from ...compiler import Plan
-from ...errors import HalationError
+from ...compiler.knobs import Knob, Point
 from ...resources.picture import Picture
-from .knobs import PackageKnob, Point
 
 FIRST_STEPS = 3
 """Steps between the first samples of a knob; where numbers bend or passes change, samples between follow."""
@@ -48,9 +47,6 @@ class Sample(Struct, frozen=True, eq=False):
     plan: Plan
     structure: object
     slots: tuple[Slot, ...]
-
-
-PlanFunction = Callable[[Point], Plan]
 
 
 def take_apart(plan: Plan, load: LoadFunction) -> Sample:
@@ -99,9 +95,9 @@ def _is_whole(value: Uniform) -> bool:
 class KnobSampler:
     """Samples one knob while all others rest at `base`."""
 
-    take: Callable[[Point], Sample]
+    take: Callable[[Point], Sample | None]
     base: Point
-    knob: PackageKnob
+    knob: Knob
     is_dense: bool = False
     """Whether all whole numbers of the range are sampled: keys of an animation may be anywhere."""
     samples: dict[float, Sample] = field(default_factory=dict[float, Sample])
@@ -121,10 +117,7 @@ class KnobSampler:
         return dict(sorted(self.samples.items()))
 
     def _take(self, x: float) -> Sample | None:
-        try:
-            return self.take({**self.base, self.knob.name: x})
-        except HalationError:
-            return None
+        return self.take({**self.base, self.knob.name: x})
 
     def _add(self, x: float) -> Sample | None:
         sample = self._take(x)
