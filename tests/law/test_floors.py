@@ -175,7 +175,9 @@ def test_every_library_is_declared() -> None:
     ours = {"halation"}
     used = {target.split(".")[0] for _, target in links()} - ours - sys.stdlib_module_names
     used -= {"pytest"}  # it loads our plugin, never we it
-    packages = {name: {name.lower(), *map(str.lower, providers.get(name, []))} for name in used}  # extras may be missing
+    packages = {
+        name: {name.lower(), *map(str.lower, providers.get(name, []))} for name in used
+    }  # extras may be missing
     assert not {name for name in used if not declared & packages[name]}
 
 
