@@ -114,7 +114,10 @@ def test_child():
         subprocess.Popen(SLEEP)
         __import__("gc").collect()
 def test_orphan():
-    assert subprocess.run(["sh", "-c", '"$@" >&- 2>&- &', "sh", *SLEEP]).returncode == 0
+    assert subprocess.run(["sh", "-c", '"$@" >&- 2>&- & echo $! >number', "sh", *SLEEP]).returncode == 0
+    command = Path("/proc", Path("number").read_text().strip(), "cmdline")
+    while not command.read_bytes().startswith(sys.executable.encode()):  # for a moment it is still the shell
+        time.sleep(0.01)
 """
 
 
