@@ -62,8 +62,13 @@ def execute(job: RenderJob, progress: Literal["bar", "json"], as_json: bool) -> 
 
 
 def open_job_graph(job: RenderJob) -> Graph:
-    """The graph of a job with the values of `--set`. Raises HalationError."""
-    return open_graph(Path(job.graph), job.sets, job.document, sandbox=job.sandbox)
+    """The graph of a job with the values of `--set`, and with what is written over it. Raises HalationError."""
+    graph = open_graph(Path(job.graph), job.sets, job.document, sandbox=job.sandbox)
+    if not job.burn_in:
+        return graph
+    from .burn_in import add_burn_in
+
+    return add_burn_in(graph)
 
 
 def _execute_opened(

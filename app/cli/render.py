@@ -97,6 +97,9 @@ def render(
             help="Round colors to 8 and 10 bits with blue noise, which prevents bands, or to the nearest code.",
         ),
     ] = "blue",
+    burn_in: Annotated[
+        bool, typer.Option("--burn-in", help="Write the file, timecode and frame over the pictures, for dailies.")
+    ] = False,
     form: Form = None,
     deterministic: Annotated[
         bool,
@@ -126,6 +129,8 @@ def render(
         raise UsageError("missing option '-o' / '--output'; see halation render --help")
     if deterministic and form_of_passes == "compute":
         raise UsageError("--deterministic renders with fragment passes: leave out --form compute")
+    if burn_in and node:
+        raise UsageError("--burn-in writes over the outputs of the graph: leave out --node")
     from ..renderer.jobs.render_job import RenderJob
 
     files, settings, destinations = (
@@ -164,6 +169,7 @@ def render(
         compression=compression,
         codec=codec,
         dither=parsing.parse_dither(dither),
+        burn_in=burn_in,
         resume=resume,
         processes=jobs,
         timeout=timeout,

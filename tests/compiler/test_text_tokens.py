@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 from halation.compiler.lowering.text_tokens import TokenSources, expand_tokens, write_timecode
 from halation.errors import GraphError
@@ -74,38 +73,3 @@ def test_timecode_counts_whole_frames():
 def test_the_date_is_that_of_the_build(monkeypatch):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
     assert read_date() == "1970-01-02"
-
-
-def test_a_text_knows_its_picture_and_frame(tmp_path, cli):
-    """`{file}` and `{meta}` are those of the file that the input comes from, through other nodes."""
-    import json
-
-    import OpenImageIO as oiio
-
-    picture = tmp_path / "plate.0007.exr"
-    spec = oiio.ImageSpec(64, 32, 4, "half")
-    spec.attribute("Make", "Lens & Co")
-    buffer = oiio.ImageBuf(spec)
-    buffer.write(str(picture))
-    graph = {
-        "halation": 1,
-        "nodes": {
-            "read": {"type": "read_image", "values": {"path": "plate.####.exr"}},
-            "soft": {"type": "gaussian_blur"},
-            "title": {"type": "text", "values": {"text": "{file} {meta:Make} {frame:4}", "size": 0.2}},
-            "plain": {"type": "text", "values": {"text": "plate.0007.exr Lens & Co 0007", "size": 0.2}},
-        },
-        "links": {
-            "soft.image": "read.out", "title.image": "soft.out", "plain.image": "soft.out",
-            "outputs.a": "title.out", "outputs.b": "plain.out",
-        },
-        "outputs": {"a": {"type": "Image"}, "b": {"type": "Image"}},
-    }  # fmt: skip
-    (tmp_path / "g.json").write_text(json.dumps(graph))
-    pixels = []
-    for name in "ab":
-        done = cli("render", tmp_path / "g.json", "--output-name", name, "-o", tmp_path / f"{name}.exr", "--frame", 7)
-        assert done.code == 0, done.err
-        pixels.append(oiio.ImageBuf(str(tmp_path / f"{name}.exr")).get_pixels())
-    np.testing.assert_array_equal(*pixels)
-    assert pixels[0][..., 3].sum() > 10.0

@@ -91,6 +91,7 @@ UNRESTRICTED = {
     "authoring/flipbook.py": "a graph that is made of text and names pictures that the user chose",
     "authoring/preferences.py": "the editor's own file",
     "authoring/recovery/recovery.py": "the editor's own files",
+    "cli/burn_in.py": "a preset",
     "cli/demo.py": "presets",
     "cli/gallery.py": "presets",
     "cli/specimen.py": "a provider that reads no files",

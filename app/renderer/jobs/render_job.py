@@ -47,6 +47,8 @@ class RenderJob(PictureSettings, frozen=True, kw_only=True, omit_defaults=True, 
     """Many files, each with inputs, values and destinations of its own instead of those of the job."""
     codec: str = ""
     dither: Dither = "blue"
+    burn_in: bool = False
+    """Write file, timecode and frame over every picture."""
     resume: bool = False
     processes: int = 1
     timeout: float = DEFAULT_TIMEOUT
