@@ -28,8 +28,9 @@ def test_burn_in_is_the_preset_over_each_picture(cli, graphs, tmp_path):
 def test_burn_in_needs_a_picture(cli, graphs, tmp_path):
     done = cli("render", graphs(), "-o", tmp_path / "a.exr", "--burn-in", "--node", "light")
     assert (done.code, "leave out --node" in done.err) == (2, True)
-    mask = {"nodes": {"shape": {"type": "shape"}}, "links": {"outputs.mask": "shape.mask"}}
-    field = graphs(outputs={"mask": {"type": "Field"}}, **mask)
+    field = tmp_path / "mask.json"
+    tree = {"halation": 1, "nodes": {"shape": {"type": "shape"}}, "links": {"outputs.mask": "shape.mask"}}
+    field.write_text(json.dumps(tree | {"outputs": {"mask": {"type": "Field"}}}))
     done = cli("render", field, "-o", tmp_path / "a.exr", "--burn-in")
     assert done.code == 2 and "no output of the graph is a picture" in done.err, done.err
 

@@ -264,10 +264,8 @@ class Recorder:
 
     def recolor(self, image: Pixels, change: ColorChange) -> Drawn:
         picture, program = self._find_pixels(image), self._resources.write_color_program(change)
-        color = (Parameter("vec4", picture.ref),)
-        return self._add_op(
-            ColorCall((picture.shape,), self._owner, program.text.name, program.function, color, program=program)
-        )
+        parts = program.text.name, program.function, (Parameter("vec4", picture.ref),)
+        return self._add_op(ColorCall((picture.shape,), self._owner, *parts, program=program))
 
     def pad(self, image: Pixels, margin: tuple[int, int], edge: Edge = "clamp") -> Drawn:
         picture = self._find_pixels(image)
