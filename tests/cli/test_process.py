@@ -8,12 +8,14 @@ import re
 import signal
 import subprocess
 import sys
+import threading
 from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 from halation.cli.program import Commands
 from halation.nodes import catalogue
+from halation.resources.library_preload import preload_libraries, wait_for_libraries
 
 HALATION = [sys.executable, "-m", "halation.cli"]
 POSIX = pytest.mark.skipif(os.name == "nt", reason="POSIX signals, pipes and terminals")
@@ -351,3 +353,31 @@ def test_the_installed_command(ten):
     result = subprocess.run([script, "check", ten], capture_output=True, text=True)
     said = [line.rpartition(" ")[2] for line in result.stdout.splitlines()]
     assert (result.returncode, said) == (0, ["[absolute-path]", "[not-canonical]"])
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
+@pytest.mark.parametrize(
+    ("words", "loads"),
+    [(("render", "none.json", "-o", "a.exr"), True), (("render", "--help"), False), (("check", "none.json"), False)],
+)
+def test_the_library_for_pictures_is_loaded_before_its_module_where_pictures_are_read(words, loads):
+    """The last thing that a process does is replaced by a look at what it has loaded, after the thread that loads."""
+    code = (
+        "import os, sys, pathlib; from halation.resources.library_preload import wait_for_libraries\n"
+        "def look(code):\n"
+        "    wait_for_libraries()\n"
+        "    maps = pathlib.Path('/proc/self/maps').read_text()\n"
+        "    print('\\nlooked', 'libOpenImageIO' in maps, 'OpenImageIO' in sys.modules)\n"
+        "os._exit = look\n"
+        "sys.argv[0] = 'halation'\n"
+        "from halation.cli import main\n"
+        "main()\n"
+    )
+    run = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, timeout=100)
+    assert run.stdout.splitlines()[-1] == f"looked {loads} False", run.stdout + run.stderr
+
+
+def test_no_thread_loads_libraries_where_a_process_may_fork():
+    preload_libraries()
+    wait_for_libraries()
+    assert "libraries" not in [thread.name for thread in threading.enumerate()]
