@@ -12,6 +12,7 @@ import select
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -33,6 +34,9 @@ with Mesa 22.3."""
 
 DEVICE_MODULE = "halation.renderer.opengl.device"
 """Loaded where the process may have opened OpenGL, whose threads would be missing in a copy."""
+
+_LINGERING = 0.02
+"""Seconds for which the system may still list a thread that has ended: measured, at most 1 ms on a busy machine."""
 
 OWN_MEMORY = 256 << 20
 """Bytes that a driver may take for itself when it compiles, besides the limit: Mesa takes 120 MiB at first."""
@@ -141,10 +145,18 @@ def end_with_watchdog() -> None:
 
 
 def can_fork() -> bool:
-    """True if a copy of this process can go on in its place: nothing but its one thread works in it yet."""
+    """True if a copy of this process can go on in its place: nothing but its one thread works in it yet.
+
+    A thread that has ended is listed for a moment longer.
+    """
     if sys.platform != "linux" or not hasattr(os, "pidfd_open") or DEVICE_MODULE in sys.modules:
         return False
-    return len(list(Path("/proc/self/task").iterdir())) == 1
+    limit = time.monotonic() + _LINGERING
+    while (
+        count := len(list(Path("/proc/self/task").iterdir()))
+    ) > threading.active_count() and time.monotonic() < limit:
+        time.sleep(_LINGERING / 100)
+    return count == 1
 
 
 def run_session(work: Callable[[], int], timeout: float, as_json: bool) -> int:
