@@ -35,8 +35,9 @@ with Mesa 22.3."""
 DEVICE_MODULE = "halation.renderer.opengl.device"
 """Loaded where the process may have opened OpenGL, whose threads would be missing in a copy."""
 
-_LINGERING = 0.02
-"""Seconds for which the system may still list a thread that has ended: measured, at most 1 ms on a busy machine."""
+_LINGERING = 0.25
+"""Seconds for which the system may still list a thread that has ended: measured, more than 20 ms in one of a thousand
+where twelve processes share four processors."""
 
 OWN_MEMORY = 256 << 20
 """Bytes that a driver may take for itself when it compiles, besides the limit: Mesa takes 120 MiB at first."""
@@ -155,7 +156,7 @@ def can_fork() -> bool:
     while (
         count := len(list(Path("/proc/self/task").iterdir()))
     ) > threading.active_count() and time.monotonic() < limit:
-        time.sleep(_LINGERING / 100)
+        time.sleep(_LINGERING / 1000)
     return count == 1
 
 

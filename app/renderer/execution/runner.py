@@ -121,16 +121,6 @@ class Runner:
         with self.device.make_current():
             self.textures.release_idle()
 
-    def release_unused(self) -> None:
-        """Release the textures that hold nothing, if no budget keeps results for later runs either.
-
-        To be called when no run follows: what only the next one could use would lie beside the pictures that are
-        being written, and they take as much again.
-        """
-        if self.textures.budget == 0:
-            with self.device.make_current():
-                self.textures.release_free()
-
     def find_texture(self, key: str) -> PooledTexture | None:
         """The texture that holds these pixels, if any does."""
         return self.textures.find(key)

@@ -93,21 +93,14 @@ class TexturePool:
         self._leases.clear()
         self._idle.clear()
         self._idle_bytes = 0
-        self.release_free()
+        self._release_free()
         self.allocated = 0
 
     def release_idle(self) -> None:
         """Release everything that has no lease."""
         for key in list(self._idle):
             self.forget(key)
-        self.release_free()
-
-    def release_free(self) -> None:
-        """Release the textures that hold no result."""
-        for waiting in self._free.values():
-            for texture in waiting:
-                self._release(texture)
-        self._free.clear()
+        self._release_free()
 
     def next_round(self) -> None:
         """Release the free textures that nobody used since the round before this one."""
@@ -170,9 +163,15 @@ class TexturePool:
         self.allocated -= texture.nbytes
         texture.handle.release()
 
+    def _release_free(self) -> None:
+        for waiting in self._free.values():
+            for texture in waiting:
+                self._release(texture)
+        self._free.clear()
+
     def _allocate(self, kind: TextureKind, surface: Surface) -> PooledTexture:
         handle = self._try_create(kind)
-        for free_memory in (self.release_free, self.release_idle):
+        for free_memory in (self._release_free, self.release_idle):
             if handle is None:
                 free_memory()
                 handle = self._try_create(kind)

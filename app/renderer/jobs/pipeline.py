@@ -63,8 +63,6 @@ class FramePipeline:
         while task is not None:
             passes = self._try_render(task, following)
             task_after = next(tasks, None)  # while the device is busy
-            if following is None:
-                self._renderer.runner.release_unused()
             if passes is not None:
                 self._try_write(task, *passes)
             self._close_sessions_before(task.session)
