@@ -13,6 +13,8 @@ from .number_field import NO_VALUE
 from .text_entry import text_entry
 
 MOST_LINES = 6
+LEAST_LINES = 3
+"""The lines of a field for a text of several lines, so that there is room to type the next one."""
 
 
 def lines_of(text: str) -> int:
@@ -36,7 +38,7 @@ def text_field(
 ) -> Edit | None:
     """Draw a text field. `hint` is shown while it is empty; `elide_left` keeps the end of the text visible."""
     assert isinstance(value, str)
-    count = lines or lines_of(value)
+    count = lines or max(lines_of(value), LEAST_LINES if declaration.has_lines else 1)
     fields.order.append(id)
     if fields.next_field == id:
         fields.type_in(id, value, value)

@@ -232,7 +232,7 @@ def _find_center(active: _ActiveNode) -> Point:
     return x * active.frame.size[0], y * active.frame.size[1]
 
 
-_CENTERS = ("center", "source", "focus_point", "start")
+_CENTERS = ("center", "anchor", "source", "focus_point", "start")
 """What nodes call the point that everything is around."""
 
 

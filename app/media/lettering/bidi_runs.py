@@ -12,6 +12,8 @@ import uharfbuzz as hb
 from halation.nodes import TextDirection
 from msgspec import Struct
 
+from .bidi_brackets import resolve_brackets
+
 _STRONG = {"L": 0, "R": 1, "AL": 1}
 _MARKED = frozenset({"R", "AL", "AN", "RLE", "RLO", "LRO", "LRE", "RLI", "LRI", "FSI"})
 _ISOLATES = str.maketrans({"\u2066": "\u202a", "\u2067": "\u202b", "\u2068": "\u202a", "\u2069": "\u202c"})
@@ -55,6 +57,7 @@ def _resolve_levels(paragraph: str, base: int) -> list[int]:
         letter["place"] = place
     algorithm.explicit_embed_and_overrides(storage)
     algorithm.resolve_weak_types(storage)
+    resolve_brackets(storage, algorithm.MIRRORED)
     algorithm.resolve_neutral_types(storage, False)
     algorithm.resolve_implicit_levels(storage, False)
     levels = [base] * len(paragraph)

@@ -86,9 +86,13 @@ def _find_fault(content: bytes, face: Any) -> str:
     """Why a file is no font that can be drawn; "" if it is one."""
     if content[:4] in (b"wOFF", b"wOF2"):
         return "is a packed font for web pages"
-    if face.glyph_count == 0 or not face.table_tags:
+    try:
+        tags = face.table_tags
+    except UnicodeDecodeError:
+        return "is damaged: its tables have no names"
+    if face.glyph_count == 0 or not tags:
         return "is no font that can be read"
-    if not any(tag in face.table_tags and len(face.reference_table(tag)) for tag in _OUTLINE_TABLES):
+    if not any(tag in tags and len(face.reference_table(tag)) for tag in _OUTLINE_TABLES):
         return "has no outlines, only pictures of letters or nothing"
     if not len(face.unicodes):
         return "is damaged: it names no characters"
@@ -97,7 +101,11 @@ def _find_fault(content: bytes, face: Any) -> str:
 
 def _read_name(face: Any) -> str:
     """The family of a font, as its file says."""
-    return face.get_name(hb.OTNameIdPredefined.TYPOGRAPHIC_FAMILY) or face.get_name(hb.OTNameIdPredefined.FONT_FAMILY)
+    ids = (hb.OTNameIdPredefined.TYPOGRAPHIC_FAMILY, hb.OTNameIdPredefined.FONT_FAMILY)
+    try:
+        return next((name for id in ids if (name := face.get_name(id))), "")
+    except (UnicodeDecodeError, hb.HarfBuzzError):  # of a damaged font, which may be drawn all the same
+        return ""
 
 
 def _find_family(family: str, typeface: Typeface, sandbox: Sandbox) -> str:
