@@ -202,10 +202,22 @@ class Device(Protocol):
         """The error that a call has caused since this was asked last, such as `GL_OUT_OF_MEMORY`; "" without one."""
         ...
 
+    def take_written(self) -> frozenset[int]:
+        """The native handles of textures whose pixels were written since this was asked last."""
+        ...
+
     # --- the window it draws to, where it has one ---------------------------------------------------------------------
 
     def target_window(self) -> None:
         """Let others draw to the window again."""
+        ...
+
+    def clear_window(self, region: PixelRect, color: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> None:
+        """Fill a part of the window, row 0 at the bottom, with one color."""
+        ...
+
+    def read_window_pixel(self) -> tuple[int, int, int]:
+        """The pixel at the lower left corner of the window."""
         ...
 
     def read_window(self) -> np.ndarray:

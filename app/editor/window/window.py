@@ -31,6 +31,7 @@ from .guard import draw_failure, draw_guarded, enable_error_recovery
 from .input_events import InputQueue
 from .layouts import LAYOUTS, apply_layout, make_splits
 from .menus import draw_menus
+from .painting import WindowPainter
 from .panels import DOCKED, OVERLAYS, Docked, Panel
 from .resting import GRACE, FrameWaker, choose_idle_rate
 from .screenshot import save_screenshot
@@ -126,6 +127,9 @@ class Window:
         calls.add_edge_toolbar(hello_imgui.EdgeToolbarType.bottom, self._draw_timeline, bar)
         calls.show_gui = self._draw_overlays
         calls.before_imgui_render = self._after_panels
+        calls.custom_background = _draw_nothing
+        calls.before_swap = self._before_swap
+        calls.after_swap = self._after_swap
         calls.confirm_exit = self._confirm_exit
         calls.before_exit = self.close
         return params
@@ -148,6 +152,7 @@ class Window:
     def _prepare(self) -> None:
         enable_error_recovery()
         self.device = adopt_window(self._form, sandbox=self._sandbox)
+        self._painter = WindowPainter(self.device, is_able=not self.params.use_imgui_test_engine)
         self.editor = assemble(self.device, self._sandbox, self._state)
         open_first(self.editor, self._path, self._bindings)
         self._contexts = compose_contexts(self.editor)
@@ -277,6 +282,15 @@ class Window:
     def _after_panels(self) -> None:
         """Panels draw pictures of their own: the screen must be bound again before the window is drawn."""
         self.device.target_window()
+        self._painter.paint()
+
+    def _before_swap(self) -> None:
+        if self.fault is None:
+            self._painter.leave_mark()
+
+    def _after_swap(self) -> None:
+        if self.fault is None:
+            self._painter.check_mark()
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
@@ -373,3 +387,7 @@ class Window:
 def _host() -> Any:
     """The window itself; the types of its library are wrong about it."""
     return glfw_utils.glfw_window_hello_imgui()
+
+
+def _draw_nothing() -> None:
+    """The background: the painter clears where it draws, so that the rest of the window stays."""

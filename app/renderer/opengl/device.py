@@ -74,7 +74,7 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
     def create_texture(
         self, size: Size, components: int, depth: TextureDepth, *, linear: bool = False
     ) -> OpenGLTexture:
-        return create_texture(self.context, size, components, depth, linear)
+        return create_texture(self.context, size, components, depth, linear, self._written)
 
     def create_table(self, table: LookupTable) -> DeviceResource:
         return create_table(self.context, table)
@@ -102,6 +102,7 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
         viewport: PixelRect | None = None,
     ) -> None:
         self._bind(bindings)
+        self._note_written(targets)
         interpolated = range(len(bindings.textures) if bindings.interpolated else 0)
         for unit in interpolated:
             self._interpolation.use(unit)
@@ -125,6 +126,7 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
         handle = cast("OpenGLProgram", program).handle
         assert isinstance(handle, moderngl.Program)
         self._bind(bindings)
+        self._note_written(targets)
         depth = self.context.depth_renderbuffer(targets[0].size)
         framebuffer = self.context.framebuffer(_handles(targets), depth)
         framebuffer.use()
@@ -150,6 +152,7 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
         handle = cast("OpenGLProgram", program).handle
         assert isinstance(handle, moderngl.ComputeShader)
         self._bind(bindings, as_images=reads_images)
+        self._note_written(targets)
         first = len(bindings.textures) if reads_images else 0
         for unit, texture in enumerate(_handles(targets), first):
             texture.bind_to_image(unit, read=False, write=True)
@@ -161,6 +164,7 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
         self.context.memory_barrier()
 
     def clear(self, texture: DeviceTexture, color: tuple[float, float, float, float]) -> None:
+        self._note_written((texture,))
         framebuffer = cast("OpenGLTexture", texture).framebuffer
         framebuffer.use()
         framebuffer.clear(*color)
@@ -191,10 +195,22 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
         error = self.context.error
         return "" if error == "GL_NO_ERROR" else error
 
+    def take_written(self) -> frozenset[int]:
+        written = frozenset(self._written)
+        self._written.clear()
+        return written
+
     # --- the window it draws to --------------------------------------------------------------------------------------
 
     def target_window(self) -> None:
         self.context.screen.use()
+
+    def clear_window(self, region: PixelRect, color: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> None:
+        self.context.screen.clear(*color, viewport=region)
+
+    def read_window_pixel(self) -> tuple[int, int, int]:
+        red, green, blue = self.context.screen.read((0, 0, 1, 1), components=3, alignment=1)
+        return red, green, blue
 
     def read_window(self) -> np.ndarray:
         width, height = self.context.screen.size
@@ -218,6 +234,13 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
     @cached_property
     def _timer(self) -> moderngl.Query:
         return self.context.query(time=True)
+
+    @cached_property
+    def _written(self) -> set[int]:
+        return set()
+
+    def _note_written(self, targets: Sequence[DeviceTexture]) -> None:
+        self._written.update(target.native_handle for target in targets)
 
     def _bind(self, bindings: Bindings, *, as_images: bool = False) -> None:
         for unit, texture in enumerate(_handles(bindings.textures)):

@@ -17,6 +17,8 @@ class OpenGLTexture(Struct, eq=False):
 
     context: moderngl.Context
     handle: moderngl.Texture
+    written: set[int]
+    """The names of all textures of the device that were written."""
     _framebuffer: moderngl.Framebuffer | None = None
 
     @property
@@ -40,6 +42,7 @@ class OpenGLTexture(Struct, eq=False):
 
     def write(self, pixels: np.ndarray) -> None:
         self.handle.write(pixels)
+        self.written.add(self.handle.glo)
 
     def read_into(self, pixels: np.ndarray) -> None:
         self.handle.read_into(pixels)
@@ -51,9 +54,12 @@ class OpenGLTexture(Struct, eq=False):
 
 
 def create_texture(
-    context: moderngl.Context, size: Size, components: int, depth: TextureDepth, linear: bool
+    context: moderngl.Context, size: Size, components: int, depth: TextureDepth, linear: bool, written: set[int]
 ) -> OpenGLTexture:
-    """A texture of undefined pixels, clamped at its edges. Raises DeviceError where there is no room for it."""
+    """A texture of undefined pixels, clamped at its edges. Raises DeviceError where there is no room for it.
+
+    Its name is added to `written` whenever it is.
+    """
     context.error  # noqa: B018  (reading it clears what earlier calls left behind)
     fault = f"the device has no room for a texture of {size[0]}x{size[1]} pixels"
     try:
@@ -65,7 +71,7 @@ def create_texture(
         handle.release()
         raise DeviceError(fault)
     _set_sampling(handle, linear)
-    return OpenGLTexture(context, handle)
+    return OpenGLTexture(context, handle, written)
 
 
 def create_table(context: moderngl.Context, table: LookupTable) -> moderngl.Texture | moderngl.Texture3D:

@@ -1,0 +1,216 @@
+"""Draws the window, on a software rasterizer only where it differs from the frame before (see `damage`).
+
+The frame is ended by us, a moment before the window library does it, and its triangles are drawn once for each
+changed rectangle, clipped to that. The library then finds a picture without size, and draws nothing more.
+
+It needs a window whose pixels stay when they are shown: a driver may swap two buffers instead of copying one. So the
+first frames are drawn whole, each with a pixel of its own color in a corner, which must still be there afterwards.
+While the test engine runs, the library draws: the thread of a test would wait for ours, which ends the frame.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from imgui_bundle import ImVec2, imgui
+from msgspec import Struct
+
+from ...renderer import Device
+from .damage import (
+    COMMAND,
+    VERTEX,
+    Array,
+    Box,
+    find_changed_boxes,
+    find_picture_boxes,
+    make_rows,
+    merge_boxes,
+    surround_rows,
+)
+
+TRIALS = 3
+"""Frames with a pixel that must stay: two buffers would show the one of the frame before the last."""
+
+
+class _DrawnList(Struct):
+    """What one panel drew in a frame."""
+
+    name: str
+    vertices: bytes
+    indices: bytes
+    commands: bytes
+    _rows: Array | None = None
+
+    @property
+    def memory(self) -> tuple[bytes, bytes, bytes]:
+        """All of it, to compare it with another frame."""
+        return self.vertices, self.indices, self.commands
+
+    @property
+    def command_table(self) -> Array:
+        """Its draw commands."""
+        return np.frombuffer(self.commands, COMMAND)
+
+    @property
+    def index_array(self) -> Array:
+        """The vertices of its triangles, three by three."""
+        return np.frombuffer(self.indices, np.uint32)
+
+    @property
+    def rows(self) -> Array:
+        """Its triangles."""
+        if self._rows is None:
+            vertices = np.frombuffer(self.vertices, np.uint32).reshape(-1, VERTEX)
+            self._rows = make_rows(vertices, self.index_array, self.command_table)
+        return self._rows
+
+
+class WindowPainter:
+    """Draws the interface of each frame, where that is needed."""
+
+    def __init__(self, device: Device, is_able: bool) -> None:
+        self._device = device
+        self._lists: tuple[_DrawnList, ...] = ()
+        self._size: tuple[int, int] = (0, 0)
+        self._trial = 0
+        self._is_able = is_able and device.target.software
+        self.drawn_boxes: tuple[Box, ...] = ()
+        """What was drawn in the last frame."""
+
+    def paint(self) -> None:
+        """Draw the frame whose panels are complete; leave it to the window library where only that can draw it."""
+        written = self._device.take_written()
+        if not self._is_able:
+            size, scale = imgui.get_io().display_size, imgui.get_io().display_framebuffer_scale
+            self._device.clear_window((0, 0, round(size.x * scale.x), round(size.y * scale.y)))
+            return
+        imgui.render()
+        picture = imgui.get_draw_data()
+        size, scale, corner = picture.display_size, picture.framebuffer_scale, picture.display_pos
+        window_size = round(size.x * scale.x), round(size.y * scale.y)
+        is_plain = (corner.x, corner.y, scale.x, scale.y) == (0.0, 0.0, 1.0, 1.0)
+        if not is_plain or not self._has_known_memory(picture):
+            self.redraw_all()
+            self._device.clear_window((0, 0, *window_size))
+            return
+        self._paint_changes(picture, window_size, written)
+        picture.display_size = ImVec2(0.0, 0.0)  # nothing is left to draw for the library
+
+    def _paint_changes(self, picture: imgui.ImDrawData, size: tuple[int, int], written: frozenset[int]) -> None:
+        before, self._lists = self._lists, tuple(map(_copy_list, picture.cmd_lists))
+        boxes: list[Box] = [(0, 0, *size)]
+        if size == self._size and self._trial > TRIALS and not _is_reordered(before, self._lists):
+            boxes = merge_boxes(_find_changes(before, self._lists, written), size)
+        self._size = size
+        for box in boxes:
+            self._paint_box(picture, box)
+        self.drawn_boxes = tuple(boxes)
+
+    def redraw_all(self) -> None:
+        """Draw the next frame whole."""
+        self._size = (0, 0)
+
+    def leave_mark(self) -> None:
+        """Draw the pixel of a trial; to be called before a frame is shown."""
+        if self._is_able and self._trial < TRIALS:
+            self._device.clear_window((0, 0, 1, 1), _make_mark(self._trial))
+
+    def check_mark(self) -> None:
+        """Leave all frames to the library if the pixel of a trial is gone; to be called after a frame is shown."""
+        if self._is_able and self._trial <= TRIALS:
+            if self._trial < TRIALS:
+                self._is_able = self._device.read_window_pixel()[0] == round(255 * _make_mark(self._trial)[0])
+            self._trial += 1
+
+    def _paint_box(self, picture: imgui.ImDrawData, box: Box) -> None:
+        """Draw what lies in a box. Commands that are clipped to nothing cost nothing."""
+        left, top, right, bottom = box
+        self._device.clear_window((left, self._size[1] - bottom, right - left, bottom - top))
+        clips = [_view_clips(lines) for lines in picture.cmd_lists]
+        originals = [clip.copy() for clip in clips]
+        for clip, original in zip(clips, originals, strict=True):
+            np.maximum(original[:, :2], box[:2], out=clip[:, :2])
+            np.minimum(original[:, 2:], box[2:], out=clip[:, 2:])
+        imgui.backends.opengl3_render_draw_data(picture)
+        for clip, original in zip(clips, originals, strict=True):
+            clip[:] = original
+
+    def _has_known_memory(self, picture: imgui.ImDrawData) -> bool:
+        """True if lists lie in memory as we read them, which is looked at once: it belongs to the library's version."""
+        if self._trial == 0:
+            self._is_able = all(map(_has_known_layout, picture.cmd_lists))
+        return self._is_able
+
+
+def _find_changes(before: Sequence[_DrawnList], after: Sequence[_DrawnList], written: frozenset[int]) -> list[Box]:
+    """Where two frames differ, and where pictures have other pixels."""
+    earlier, boxes = {drawn.name: drawn for drawn in before}, list[Box]()
+    for drawn in after:
+        past = earlier.pop(drawn.name, None)
+        if past is None:
+            boxes += surround_rows(drawn.rows)
+            continue
+        if past.memory != drawn.memory:
+            boxes += find_changed_boxes(past.rows, drawn.rows)
+        else:
+            drawn._rows = past._rows
+        if written and np.isin(drawn.command_table["texture"], list(written)).any():
+            boxes += find_picture_boxes(drawn.command_table, drawn.rows, written)
+    return boxes + [box for gone in earlier.values() for box in surround_rows(gone.rows)]
+
+
+def _is_reordered(before: Sequence[_DrawnList], after: Sequence[_DrawnList]) -> bool:
+    """True if lists that both frames have lie above each other in another order."""
+    names, earlier = {drawn.name for drawn in after}, {drawn.name for drawn in before}
+    return [drawn.name for drawn in before if drawn.name in names] != [
+        drawn.name for drawn in after if drawn.name in earlier
+    ]
+
+
+def _copy_list(lines: imgui.ImDrawList) -> _DrawnList:
+    vertices, indices, commands = lines.vtx_buffer, lines.idx_buffer, lines.cmd_buffer
+    return _DrawnList(
+        str(lines._owner_name),
+        _copy_bytes(vertices, 4 * VERTEX),
+        _copy_bytes(indices, 4),
+        _copy_bytes(commands, COMMAND.itemsize),
+    )
+
+
+def _copy_bytes(vector: Any, width: int) -> bytes:
+    count = vector.size()
+    return ctypes.string_at(vector.data_address(), count * width) if count else b""
+
+
+def _view_clips(lines: imgui.ImDrawList) -> Array:
+    """The rectangles to which the commands of a list are clipped, in place: float [n, 4]."""
+    commands = lines.cmd_buffer
+    count = commands.size()
+    if not count:
+        return np.empty((0, 4), np.float32)
+    memory = (ctypes.c_uint8 * (count * COMMAND.itemsize)).from_address(commands.data_address())
+    return np.frombuffer(memory, COMMAND)["clip"]
+
+
+def _has_known_layout(lines: imgui.ImDrawList) -> bool:
+    """True if what the library says of a list is where we look for it in memory."""
+    drawn = _copy_list(lines)
+    if not drawn.indices:
+        return True
+    table, vertex = drawn.command_table, np.frombuffer(drawn.vertices, np.float32).reshape(-1, VERTEX)[-1]
+    place = lines.vtx_buffer[lines.vtx_buffer.size() - 1].pos
+    last_index = lines.idx_buffer[lines.idx_buffer.size() - 1]
+    are_ends_known = (place.x, place.y) == (vertex[0], vertex[1]) and last_index == drawn.index_array[-1]
+    return are_ends_known and all(
+        (tuple(row["clip"]), row["first_vertex"], row["first_index"], row["count"])
+        == (tuple(command.clip_rect), command.vtx_offset, command.idx_offset, command.elem_count)
+        for row, command in zip(table, lines.cmd_buffer, strict=True)
+    )
+
+
+def _make_mark(trial: int) -> tuple[float, float, float]:
+    """The color of a trial's pixel."""
+    return (1.0 + trial) / (1.0 + TRIALS), 0.0, 0.0

@@ -1,0 +1,98 @@
+"""Changed rectangles of the window, compared with a rasterizer that knows nothing of them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from halation.editor.window.damage import COMMAND, find_changed_boxes, find_picture_boxes, make_rows, merge_boxes
+
+SIZE = (64, 48)
+
+
+def make_list(rects: list[tuple[int, int, int, int, int]], clips: list[tuple[int, int, int, int]], texture: int = 7):
+    """Rectangles of one color each, as the interface library has them: a command for each clip."""
+    corners = [((x, y), (x + w, y), (x + w, y + h), (x, y + h)) for x, y, w, h, _ in rects]
+    vertices = np.zeros((4 * len(rects), 5), np.uint32)
+    vertices[:, :2] = np.array(corners, np.float32).reshape(-1, 2).view(np.uint32)
+    vertices[:, 4] = np.repeat([rect[4] for rect in rects], 4)
+    indices = np.concatenate([np.array((0, 1, 2, 0, 2, 3)) + 4 * n for n in range(len(rects))]).astype(np.uint32)
+    commands = np.zeros(len(clips), COMMAND)
+    share = len(rects) // len(clips)
+    for number, clip in enumerate(clips):
+        last = number == len(clips) - 1
+        commands[number] = (clip, 0, texture + number, 0, 6 * share * number, 0, 0)
+        commands[number]["count"] = len(indices) - 6 * share * number if last else 6 * share
+    return commands, make_rows(vertices, indices, commands)
+
+
+def draw(rects, clips) -> np.ndarray:
+    """The same rectangles, one above the other."""
+    pixels = np.zeros((SIZE[1], SIZE[0]), np.uint32)
+    share = len(rects) // len(clips)
+    for number, (x, y, width, height, color) in enumerate(rects):
+        left, top, right, bottom = clips[min(number // share, len(clips) - 1)]
+        low_x, low_y, high_x, high_y = max(x, left), max(y, top), min(x + width, right), min(y + height, bottom)
+        if low_x < high_x and low_y < high_y:
+            pixels[low_y:high_y, low_x:high_x] = color
+    return pixels
+
+
+def choose(random: np.random.Generator) -> tuple[int, int, int, int, int]:
+    """A rectangle in the window."""
+    x, y = random.integers(0, SIZE[0] - 4), random.integers(0, SIZE[1] - 4)
+    return int(x), int(y), int(random.integers(1, 16)), int(random.integers(1, 16)), int(random.integers(1, 2**32))
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_no_pixel_outside_of_the_boxes_differs(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    before = [choose(random) for _ in range(40)]
+    after, clips = list(before), [(0, 0, 40, 48), (8, 0, 64, 40)]
+    new_clips = list(clips)
+    for _ in range(int(random.integers(1, 4))):
+        place = int(random.integers(0, len(after)))
+        match int(random.integers(0, 5)):
+            case 0:
+                after[place] = choose(random)
+            case 1:
+                after.insert(place, choose(random))
+            case 2:
+                del after[place]
+            case 3:
+                after[place] = (*after[place][:4], 5)
+            case _:
+                new_clips[1] = (8, 0, 50, 44)
+    boxes = find_changed_boxes(make_list(before, clips)[1], make_list(after, new_clips)[1])
+    outside = np.ones((SIZE[1], SIZE[0]), bool)
+    for left, top, right, bottom in boxes:
+        outside[max(top, 0) : bottom, max(left, 0) : right] = False
+    assert not (draw(before, clips) != draw(after, new_clips))[outside].any()
+    merged = merge_boxes(boxes, SIZE)
+    covered = np.zeros((SIZE[1], SIZE[0]), int)
+    for left, top, right, bottom in merged:
+        covered[top:bottom, left:right] += 1
+    assert covered.max(initial=0) <= 1 and (covered[~outside] == 1).all(), "merged boxes cover all, and each pixel once"
+
+
+def test_equal_lists_have_no_box() -> None:
+    random = np.random.default_rng(0)
+    rects = [choose(random) for _ in range(40)]
+    rows = make_list(rects, [(0, 0, 64, 48)])[1]
+    assert find_changed_boxes(rows, rows.copy()) == []
+    empty = make_rows(np.empty((0, 5), np.uint32), np.empty(0, np.uint32), np.empty(0, COMMAND))
+    assert find_changed_boxes(empty, empty) == []
+    assert find_changed_boxes(empty, rows) == find_changed_boxes(rows, empty) != []
+
+
+def test_a_picture_has_the_box_of_its_texture() -> None:
+    commands, rows = make_list([(1, 2, 8, 4, 1), (20, 10, 10, 10, 1)], [(0, 0, 64, 48), (0, 0, 25, 48)])
+    assert find_picture_boxes(commands, rows, {8}) == [(20, 10, 25, 20)]
+    assert find_picture_boxes(commands, rows, {7, 8}) == [(1, 2, 9, 6), (20, 10, 25, 20)]
+    assert find_picture_boxes(commands, rows, {3}) == []
+
+
+def test_far_boxes_stay_apart() -> None:
+    near, far = (10, 10, 60, 60), (1500, 900, 1560, 960)
+    assert merge_boxes([near, far], (1920, 1080)) == [near, far]
+    assert merge_boxes([near, (40, 40, 80, 80)], (1920, 1080)) == [(10, 10, 80, 80)]
+    assert merge_boxes([(-5, -5, 0, 0), (1900, 1000, 2000, 1200)], (1920, 1080)) == [(1900, 1000, 1920, 1080)]
