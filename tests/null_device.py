@@ -179,8 +179,17 @@ class NullDevice:
     def take_error(self) -> str:
         return ""
 
+    def take_written(self) -> frozenset[int]:
+        return frozenset()
+
     def target_window(self) -> None:
         pass
+
+    def clear_window(self, region: PixelRect, color: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> None:
+        pass
+
+    def read_window_pixel(self) -> tuple[int, int, int]:
+        return 0, 0, 0
 
     def read_window(self) -> np.ndarray:
         return np.zeros((1, 1, 3), np.uint8)

@@ -192,7 +192,7 @@ def _view_clips(lines: imgui.ImDrawList) -> Array:
     if not count:
         return np.empty((0, 4), np.float32)
     memory = (ctypes.c_uint8 * (count * COMMAND.itemsize)).from_address(commands.data_address())
-    return np.frombuffer(memory, COMMAND)["clip"]
+    return np.ctypeslib.as_array(memory).view(COMMAND)["clip"]
 
 
 def _has_known_layout(lines: imgui.ImDrawList) -> bool:
