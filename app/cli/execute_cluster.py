@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -22,7 +22,8 @@ from .outcome import print_json, print_note, write_count
 
 if TYPE_CHECKING:
     from ..cluster.campaign import CampaignReport
-    from ..cluster.chunk import FrameChunk
+    from ..cluster.chunk import FileMark, FrameChunk
+    from ..cluster.connection import Client
     from ..cluster.file_marks import FileMarker
     from ..graph import Graph
     from ..renderer.jobs.render_job import RenderJob
@@ -32,11 +33,13 @@ _MAX_NAMED = 10
 
 
 class ClusterOptions(Struct, frozen=True):
-    """Where the frames of a job are rendered: an address, `--map`, and Dask's priority."""
+    """Where the frames of a job are rendered: an address, `--map`, and the priority of Dask."""
 
     address: str
     path_map: tuple[tuple[str, str], ...] = ()
     priority: int = 0
+    detaches: bool = False
+    """True if the command ends as soon as the job is sent."""
 
 
 def execute_on_cluster(job: RenderJob, options: ClusterOptions, progress: Literal["bar", "json"], as_json: bool) -> int:
@@ -45,20 +48,19 @@ def execute_on_cluster(job: RenderJob, options: ClusterOptions, progress: Litera
     from ..cluster.connection import find_dashboard, open_client
 
     started = time.perf_counter()
-    _refuse_options(job)
+    _refuse_options(job, options)
     graph = open_job_graph(job)
     report_problems(Path(job.graph), graph)
     with open_client(options.address, job) as client:
         chunk, marker, history = prepare_chunk(job, graph, options)
+
+        def mark_files(frames: tuple[int, ...]) -> dict[str, FileMark]:
+            return marker.mark_files(frames, _find_history(graph, frames, history))
+
+        if options.detaches:
+            return _send(client, chunk, mark_files, options, job.graph, as_json)
         reporter = ClusterProgress(len(chunk.job.frames), progress, find_dashboard(client))
-        campaign = FrameCampaign(
-            client,
-            options.address,
-            chunk,
-            lambda frames: marker.mark_files(frames, _find_history(graph, frames, history)),
-            reporter,
-            options.priority,
-        )
+        campaign = FrameCampaign(client, options.address, chunk, mark_files, reporter, options.priority)
         with reporter:
             report = campaign.run()
     return _print_cluster_report(report, chunk, job, time.perf_counter() - started, as_json)
@@ -106,8 +108,38 @@ def prepare_chunk(job: RenderJob, graph: Graph, options: ClusterOptions) -> tupl
     return chunk, marker, history
 
 
-def _refuse_options(job: RenderJob) -> None:
+def _send(
+    client: Client,
+    chunk: FrameChunk,
+    mark_files: Callable[[tuple[int, ...]], Mapping[str, FileMark]],
+    options: ClusterOptions,
+    graph: str,
+    as_json: bool,
+) -> int:
+    """Leave the frames to the cluster, and print the name of the job."""
+    from ..cluster.detached import DetachedCampaign, send_campaign
+
+    frames = chunk.job.frames
+    marks_by_frame = {frames[0]: mark_files(frames)} if chunk.is_chain else {n: mark_files((n,)) for n in frames}
+    chunk = replace(
+        chunk,
+        job=replace(chunk.job, resume=not chunk.job.videos),
+        marks={path: mark for marks in marks_by_frame.values() for path, mark in marks.items()},
+    )
+    files = {frame: tuple(marks) for frame, marks in marks_by_frame.items()}
+    name = send_campaign(client, DetachedCampaign("", chunk, files, options.priority), graph)
+    if as_json:
+        print_json({"job": name, "frames": len(frames)})
+    else:
+        print(name)
+        print_note(f"halation jobs --cluster {options.address} --follow {name} shows how far it is")
+    return 0
+
+
+def _refuse_options(job: RenderJob, options: ClusterOptions) -> None:
     """Raise UsageError for options that a cluster does not serve."""
+    if options.detaches and options.address.startswith("local"):
+        raise UsageError(f"--detach: the workers of {options.address} end with the command: name a scheduler")
     if job.entries:
         raise UsageError("--cluster shares the frames of one graph: leave it out with --each, or share files by -j")
     if job.processes > 1:

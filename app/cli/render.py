@@ -69,6 +69,10 @@ def render(
     priority: Annotated[
         int, typer.Option("--priority", help="Frames of jobs with a higher number go first on a cluster.")
     ] = 0,
+    detach: Annotated[
+        bool,
+        typer.Option("--detach", help="Leave the job to the cluster; halation jobs lists, follows and cancels it."),
+    ] = False,
     precision: Precision = None,
     memory: Memory = None,
     view: View = "",
@@ -176,11 +180,11 @@ def render(
         sandbox=sandbox,
     )
     if not cluster:
-        if path_map or priority:
-            raise UsageError("--map and --priority are for a cluster: write --cluster ADDRESS too")
+        if path_map or priority or detach:
+            raise UsageError("--map, --priority and --detach are for a cluster: write --cluster ADDRESS too")
         return execute(job, parsing.parse_progress(progress), as_json)
     from ..cluster.path_map import parse_path_map
     from .execute_cluster import ClusterOptions, execute_on_cluster
 
-    options = ClusterOptions(cluster, parse_path_map(path_map or ()), priority)
+    options = ClusterOptions(cluster, parse_path_map(path_map or ()), priority, detach)
     return execute_on_cluster(job, options, parsing.parse_progress(progress), as_json)

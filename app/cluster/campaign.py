@@ -63,7 +63,8 @@ class CampaignReport(Struct):
 class FrameCampaign:
     """The frames of one job on their way through a cluster. `chunk` is what all chunks share.
 
-    `mark_files` describes the files that frames read. `priority` is Dask's: chunks of a higher one go first.
+    `mark_files` describes the files that frames read. `priority` is Dask's: chunks of a higher one go first. The
+    campaign ends early once it `is_cancelled`.
     """
 
     def __init__(
@@ -74,8 +75,10 @@ class FrameCampaign:
         mark_files: Callable[[tuple[int, ...]], Mapping[str, FileMark]],
         listener: CampaignListener,
         priority: int = 0,
+        is_cancelled: Callable[[], bool] = lambda: False,
     ) -> None:
         self._client, self._address, self._listener, self._priority = client, address, listener, priority
+        self._is_cancelled = is_cancelled
         self._name = f"halation-{uuid4().hex[:8]}"
         self._chunk, self._mark_files = replace(chunk, topic=self._name), mark_files
         self._frames = AssignmentQueue(chunk.job.frames, is_chain=chunk.is_chain)
@@ -94,7 +97,7 @@ class FrameCampaign:
         """
         self._client.subscribe_topic(self._name, lambda event: self._inbox.put(event[1]))
         try:
-            while len(self._frames) or self._sent:
+            while (len(self._frames) or self._sent) and not self._is_cancelled():
                 self._look_at_workers()
                 self._send_chunks()
                 self._receive()

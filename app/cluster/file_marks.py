@@ -51,9 +51,9 @@ class FileMarker:
     def mark_files(self, frames: Sequence[int], history: range) -> dict[str, FileMark]:
         """The files that frames read, and those of their history, by absolute path. What is missing is left out."""
         paths = list(dict.fromkeys([*self._others, *self._list_pictures(frames, history)]))
-        new_paths = [path for path in paths if path not in self._marks]
-        with ThreadPoolExecutor(_THREADS, thread_name_prefix="mark") as threads:
-            self._marks |= dict(zip(new_paths, threads.map(self._mark, new_paths), strict=True))
+        if new_paths := [path for path in paths if path not in self._marks]:
+            with ThreadPoolExecutor(_THREADS, thread_name_prefix="mark") as threads:
+                self._marks |= dict(zip(new_paths, threads.map(self._mark, new_paths), strict=True))
         return {path: mark for path in paths if (mark := self._marks[path]) is not None}
 
     def read_contents(self) -> dict[str, str]:

@@ -37,7 +37,7 @@ def render_chunk(text: str) -> str:
     chunk = replace(chunk, job=replace(chunk.job, memory=choose_memory(chunk.job.memory, limit)))
     reporter = _FrameReporter(worker, chunk.topic)
     with open_pool().lend_process(chunk, worker.address) as process:
-        report = process.render(chunk, reporter.report_frame, _make_cancel_check(worker), limit)
+        report = process.render(chunk, reporter.report_frame, make_cancel_check(worker), limit)
     reporter.flush()
     return replace(report, worker=worker.address).to_json()
 
@@ -69,7 +69,7 @@ def open_pool() -> RenderProcessPool:
     return RenderProcessPool()
 
 
-def _make_cancel_check(worker: Worker) -> Callable[[], bool]:
+def make_cancel_check(worker: Worker) -> Callable[[], bool]:
     """What tells whether the task that runs on this thread is still needed."""
     key = worker.get_current_task()
 

@@ -1,0 +1,62 @@
+"""`render --detach` and `halation jobs`, and which workers get frames."""
+
+from __future__ import annotations
+
+import json
+import time
+
+import pytest
+from farms import FRAMES, read_frames
+
+pytest.importorskip("distributed", reason="Dask is not installed")
+
+
+def list_jobs(halation, farm):
+    return json.loads(halation("jobs", "--cluster", farm.address, "--json").out)["jobs"]
+
+
+def send(halation, farm, *words):
+    return halation("render", "shot.json", "--deterministic", "--detach", "--cluster", farm.address, "--json", *words)
+
+
+def test_a_job_goes_on_without_its_sender_and_is_followed_and_forgotten(halation, shot, farm):
+    ending = send(halation, farm, "-o", "f.####.exr")
+    assert ending.code == 0, ending.err
+    name = json.loads(ending.out)["job"]
+    followed = halation("jobs", "--cluster", farm.address, "--follow", name)
+    assert followed.code == 0 and f"{name}  finished  8 of 8 frames" in followed.out, followed
+    (shot / "one").mkdir()
+    assert halation("render", "shot.json", "-o", "one/f.####.exr", "--deterministic").code == 0
+    assert read_frames(shot) == read_frames(shot / "one")
+    assert [(job["name"], job["state"]) for job in list_jobs(halation, farm)] == [(name, "finished")]
+    assert halation("jobs", "--cluster", farm.address, "--cancel", name).code == 0
+    assert list_jobs(halation, farm) == []
+    ending = halation("jobs", "--cluster", farm.address, "--follow", name)
+    assert ending.code == 2 and "the cluster has no such job" in ending.err
+
+
+def test_a_job_that_is_cancelled_leaves_finished_frames_and_nothing_else(halation, shot, farm):
+    graph = json.loads((shot / "shot.json").read_text())
+    graph["inputs"]["plate"]["missing"] = "hold"
+    (shot / "shot.json").write_text(json.dumps(graph))
+    ending = send(halation, farm, "-o", "f.####.exr", "--frames", "1001-5000")
+    assert ending.code == 0, ending.err
+    name = json.loads(ending.out)["job"]
+    while not list(shot.glob("f.*.exr")):
+        time.sleep(0.05)
+    (job,) = list_jobs(halation, farm)
+    assert job["state"] == "rendering" and job["total"] == 4000 and job["graph"] == "shot.json"
+    assert halation("jobs", "--cluster", farm.address, "--cancel", name).code == 0
+    time.sleep(1.0)
+    written = len(list(shot.glob("f.*.exr")))
+    time.sleep(1.0)
+    assert len(list(shot.glob("f.*.exr"))) == written < 4000 and not list(shot.glob(".halation-*"))
+
+
+def test_only_workers_with_a_gpu_render_where_there_are_some(halation, shot, farm):
+    farm.start_worker("--resources", "GPU=1")
+    words = ("-o", "f.####.exr", "--cluster", farm.address, "--priority", "5", "--json")
+    while json.loads(halation("render", "shot.json", *words).out)["workers"] != 1:
+        time.sleep(0.1)  # until the new worker is connected
+    ending = halation("render", "shot.json", *words, "--deterministic")
+    assert json.loads(ending.out)["workers"] > 1 and len(list(shot.glob("f.*.exr"))) == len(FRAMES)
