@@ -117,6 +117,6 @@ def rebuild_fault(facts: Mapping[str, Any]) -> HalationError:
     if not (isinstance(kind, type) and issubclass(kind, HalationError)):
         kind = HalationError
     fault = kind.__new__(kind)
-    HalationError.__init__(fault, str(facts.get("message", "another process has failed")))
+    HalationError.__init__(fault, str(facts.get("message", "another process failed")))
     fault.exit_code = int(facts.get("exit_code", 1))
     return fault

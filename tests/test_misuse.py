@@ -197,7 +197,7 @@ def test_frames_go_from_thread_to_thread() -> None:
     assert frames == [1, 2, 3]
     rendered = hal.render_frames(small_graph(), {"beauty": SMALL}, range(1, 5))
     next(rendered)
-    with ThreadPoolExecutor(1) as threads, pytest.raises(hal.HalationError, match="take the others there too"):
+    with ThreadPoolExecutor(1) as threads, pytest.raises(hal.HalationError, match="render the others there too"):
         threads.submit(next, rendered).result(60)
 
 

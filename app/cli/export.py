@@ -54,14 +54,17 @@ def export(
     size: SizeText = None,
     frame: OneFrame = None,
     encoding: Annotated[
-        str, typer.Option(metavar="linear|srgb", help="Of a table: what its numbers are, light or codes of a display.")
+        str,
+        typer.Option(metavar="linear|srgb", help="For a table: whether its numbers are linear light or display codes."),
     ] = "",
     color_range: Annotated[
-        str, typer.Option("--range", metavar="LOW,HIGH", help="Of a table: the range of light before it.")
+        str, typer.Option("--range", metavar="LOW,HIGH", help="For a table: the range of light that it covers.")
     ] = "",
-    lut_size: Annotated[int, typer.Option("--lut-size", metavar="N", help="Of a table: colors along each side.")] = 33,
+    lut_size: Annotated[
+        int, typer.Option("--lut-size", metavar="N", help="For a table: the number of colors along each side.")
+    ] = 33,
     check: Annotated[
-        bool, typer.Option("--check", help="Of a table: print the largest and the mean error over a picture.")
+        bool, typer.Option("--check", help="For a table: print its largest and mean error over a picture.")
     ] = False,
     as_json: AsJson = False,
     *,

@@ -41,7 +41,7 @@ def reproduce(
     search: Annotated[
         list[Path] | None,
         typer.Option(
-            "--search", metavar="DIR", help="Search moved files in this folder and below, by name and by content."
+            "--search", metavar="DIR", help="Search for moved files in this folder and below, by name and by content."
         ),
     ] = None,
     graph: Annotated[

@@ -104,7 +104,9 @@ def _make_class(
     function = prefix + entry.name
     edges = {parameter.note.edge for parameter in parameters if parameter.note.edge}
     if len(edges) > 1:
-        raise CodeFault(entry.line, f"pictures end in different ways ({', '.join(sorted(edges))}): choose one edge")
+        raise CodeFault(
+            entry.line, f"the inputs have different edges ({', '.join(sorted(edges))}): choose one for all of them"
+        )
     renamed = prefix_names(expanded, functions, prefix)
     with_loop_guards = guard_loops(renamed)
     with_guards = guard_code(with_loop_guards, types)
@@ -202,14 +204,14 @@ def _check_parameters(entry: GlslFunction, parameters: tuple[_Parameter, ...]) -
     names = set[str]()
     for parameter in parameters:
         if parameter.name in names or parameter.name in _RESERVED:
-            why = "is there twice" if parameter.name in names else "means something else here"
+            why = "is used twice" if parameter.name in names else "means something else here"
             raise CodeFault(parameter.line, f"the name '{parameter.name}' {why}: choose another")
         names.add(parameter.name)
     outputs = [parameter for parameter in parameters if parameter.out]
     if outputs and entry.result != "void":
         raise CodeFault(entry.line, f"'{entry.name}' returns a {entry.result} and has out parameters: keep one of both")
     if outputs and parameters[-len(outputs) :] != tuple(outputs):
-        raise CodeFault(outputs[0].line, "out parameters come last")
+        raise CodeFault(outputs[0].line, "put out parameters last")
     if not outputs and entry.result == "void":
         raise CodeFault(entry.line, f"'{entry.name}' makes nothing: return a vec4, or write an out parameter")
 

@@ -57,7 +57,7 @@ def _parse_default(glsl: str, name: str, text: str, line: int) -> Scalar:
     words = {"true": True, "on": True, "false": False, "off": False}
     if glsl == "bool":
         if text not in words:
-            raise CodeFault(line, f"the default of '{name}' is '{text}': a bool is true or false")
+            raise CodeFault(line, f"the default of '{name}' is '{text}': a bool must be true or false")
         return words[text]
     length = _GLSL[glsl]
     parts = re.sub(r"^(?:vec\d)?\(|\)$", "", text).replace(",", " ").split()
@@ -69,7 +69,7 @@ def _parse_default(glsl: str, name: str, text: str, line: int) -> Scalar:
         raise CodeFault(line, f"the default of '{name}' is '{text}': a {glsl} is {expected}")
     if glsl == "int":
         if numbers[0] != int(numbers[0]):
-            raise CodeFault(line, f"the default of '{name}' is '{text}': an int is a whole number")
+            raise CodeFault(line, f"the default of '{name}' is '{text}': an int must be a whole number")
         return int(numbers[0])
     return numbers[0] if length == 1 else numbers
 

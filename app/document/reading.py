@@ -271,7 +271,7 @@ class _BodyReader(Struct):
             for version in range(record.version, kind.version):
                 values = dict(kind.upgrade(version, values))
         except _DAMAGED:
-            fault = f"these are no values of version {record.version} of '{kind.id}'"
+            fault = f"the values do not fit version {record.version} of '{kind.id}': correct them, or remove the node"
             raise DocumentError(self.file, member(at, "values"), fault) from None
         if record.package and (record.version == kind.version or not kind.required_package):
             self.keep_package(id, record.package, kind)

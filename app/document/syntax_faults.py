@@ -31,9 +31,9 @@ def explain_syntax(text: str, error: json.JSONDecodeError) -> tuple[str, int]:
     if not following and not reason.startswith(("Unterminated", "Invalid")):
         return "the text ends too early: a bracket or a value is missing at its end", max(before, 0)
     if following.startswith(("//", "/*", "#")):
-        return "JSON has no comments; a graph keeps notes in frames and comments of the editor", position
+        return "JSON has no comments: remove this one; the editor keeps notes in frames and comments", position
     if following.startswith("'"):
-        return "names and strings stand in double quotes", position
+        return "write names and strings in double quotes", position
     if reason == "Expecting ',' delimiter":
         return f"a comma or a closing bracket is missing after {_quote_end(text, before)}", before
     if reason == "Expecting ':' delimiter":
@@ -48,7 +48,7 @@ def explain_syntax(text: str, error: json.JSONDecodeError) -> tuple[str, int]:
     if reason.startswith("Unterminated string") or reason == "Invalid control character":
         return "the closing quote of a string is missing", error.pos
     if reason.startswith("Invalid \\"):
-        return "a backslash in a string is written twice", error.pos
+        return "write a backslash in a string twice", error.pos
     if reason == "Extra data":
         return "more text follows the end of the graph", position
     return reason[:1].lower() + reason[1:], error.pos

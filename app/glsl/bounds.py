@@ -126,7 +126,7 @@ class _Bounds:
             elif text == "[" and at not in lengths:
                 place = self.reader.read(at + 1, self.partners[at]).number
                 if isinstance(place, int) and not 0 <= place <= MOST_FLOATS:
-                    raise self.fault(at, f"there is no place {place} in an array: {MOST_FLOATS} numbers are the most")
+                    raise self.fault(at, f"an array has no index {place}: {MOST_FLOATS} numbers are the most")
 
     def _limit(self, at: int, floats: int) -> None:
         if floats > MOST_FLOATS:
@@ -180,7 +180,7 @@ class _Bounds:
             else:
                 length = self._read_length(at + 1, closed)
                 if not isinstance(length, int):
-                    raise self.fault(at, "the length of an array is a number, or a constant that is one")
+                    raise self.fault(at, "the length of an array must be a number, or a constant that is one")
                 if not 0 < length <= MOST_FLOATS:
                     raise self.fault(at, f"an array cannot have the length {length}: {MOST_FLOATS} is the most")
                 product *= length

@@ -188,7 +188,7 @@ class _DivisionGuard:
             line = count_line(self.code, self.tokens[at].start)
             self._check_constant(divisor, self.reader.read(start, at), line)
             if self.tokens[qualifier].text == "case":
-                raise GlslFault(line, "a case is divided by what only the driver can tell: write a number")
+                raise GlslFault(line, "a case label divides by a number that is not known here: write the number")
             if divisor.number is not None:
                 return True
             self.variables.add(qualifier)

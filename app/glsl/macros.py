@@ -152,7 +152,7 @@ class _Expander:
     def _define(self, rest: str, line: int) -> None:
         definition = _DEFINITION.fullmatch(rest)
         if not definition or definition[1] in _FIXED:
-            raise GlslFault(line, "#define is followed by the name of the macro")
+            raise GlslFault(line, "#define must be followed by the name of the macro")
         body = tuple(split_tokens(definition[4]))
         if "##" in (body[:1] + body[-1:]):
             raise GlslFault(line, f"'##' joins nothing in the macro '{definition[1]}'")
@@ -171,7 +171,7 @@ class _Expander:
         if name != "if":
             word = rest.split()
             if not word:
-                raise GlslFault(line, f"#{name} is followed by the name of a macro")
+                raise GlslFault(line, f"#{name} must be followed by the name of a macro")
             return (word[0] in self.macros) == (name == "ifdef")
         tokens = deque[_Painted]()
         texts = iter(split_tokens(rest))
@@ -183,7 +183,7 @@ class _Expander:
             if word == "(":
                 word, closing = next(texts, ""), next(texts, "")
                 if closing != ")":
-                    raise GlslFault(line, "'defined' is followed by a name")
+                    raise GlslFault(line, "'defined' must be followed by a name")
             tokens.append(("1" if word in self.macros else "0", frozenset()))
         return evaluate_condition(list(self._expand(tokens, line, follow=False)), line) != 0
 

@@ -193,7 +193,7 @@ class _ValueEvaluation:
         port, channel = find_named_value(self._graph, name)
         plain = self.evaluate(port)
         if isinstance(plain, ItemSet):
-            raise GraphError(f"'{port}' holds named items: name a field of one")
+            raise GraphError(f"'{port}' holds named items: name a field of one, such as {port}.NAME.FIELD")
         return plain[channel] if channel is not None and isinstance(plain, tuple) else plain
 
 

@@ -177,7 +177,7 @@ def _animations(graph: Graph) -> Iterator[Problem]:
         yield Problem(port.node, port.socket, fault, rules.BAD_ANIMATION, f"animation.{port}")
     first, last = graph.settings.frames or (1, 1)
     if last < first:
-        sentence = f"the frames {first} to {last} run backwards: the first comes first"
+        sentence = f"the frames {first} to {last} run backwards: exchange the two"
         yield Problem("", "", sentence, rules.BACKWARD_FRAMES, "settings.frames")
 
 

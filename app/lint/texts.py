@@ -21,7 +21,7 @@ UNREADABLE_GRAPH = Rule(
     "Name another file.",
 )
 CONFLICT_MARKERS = Rule(
-    "conflict-markers", "error", "A merge of git was left unfinished in the file.", "Resolve it, or merge it anew."
+    "conflict-markers", "error", "A merge of git was left unfinished in the file.", "Resolve it, or merge again."
 )
 SYNTAX = Rule("syntax", "error", "The file is not valid JSON.", "Correct the line that is named.")
 DOUBLE_KEY = Rule(
@@ -33,7 +33,7 @@ DOUBLE_KEY = Rule(
 SCHEMA = Rule(
     "schema",
     "error",
-    "Something in the file is not of the type that the format asks for.",
+    "A value in the file has the wrong type.",
     "Correct it; with halation schema, a text editor shows it while you type.",
 )
 NEWER_VERSION = Rule(

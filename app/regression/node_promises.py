@@ -109,15 +109,15 @@ def find_file_faults(name: str, names: Iterable[str]) -> Iterator[str]:
     for function in text.all_functions:
         place = f"{text.file}, line {function.line}: "
         if function.name in TAKEN_NAMES:
-            yield f"{place}the function '{function.name}' has a name of GLSL"
+            yield f"{place}the function '{function.name}' has a name that GLSL reserves: choose another one"
         if _signature(function) in others:
-            yield f"{place}the function '{function.name}' is defined in another file too"
+            yield f"{place}the function '{function.name}' is defined in another file too: rename one"
         for _, parameter in function.parameters:
             if parameter in TAKEN_NAMES | _PASS_NAMES:
-                yield f"{place}the parameter '{parameter}' has a name of GLSL or of the pass"
+                yield f"{place}the parameter '{parameter}' has a name that GLSL or the pass reserves: choose another"
     for word in _PASS_TEXT:
         if re.search(rf"(?<![\w]){re.escape(word)}", text.body):
-            yield f"{text.file}: '{word.strip()}' is what the compiler writes: leave it out"
+            yield f"{text.file}: '{word.strip()}' is written by the compiler: leave it out"
 
 
 def _signature(function: GlslFunction) -> tuple[str, tuple[str, ...]]:

@@ -113,7 +113,9 @@ def _run_shared(
             if supervisor is not None:
                 supervisor.check()
     except BrokenProcessPool:
-        raise RenderError("a process was ended from outside, perhaps for want of memory: use fewer, -j 1") from None
+        raise RenderError(
+            "a process was ended from outside, probably because memory ran out: use fewer processes, such as -j 1"
+        ) from None
     finally:
         pool.shutdown(cancel_futures=True)
 

@@ -22,7 +22,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         "--halation-update",
         action="store_true",
         default=False,
-        help="bless: write golden pictures that are missing or fail as they are rendered now",
+        help="bless: write golden pictures that are missing or that fail",
     )
     group.addoption(
         "--halation-out", metavar="DIR", default=None, help="leave pictures of failures here (default: a temporary one)"

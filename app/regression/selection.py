@@ -22,7 +22,7 @@ def select_cases(cases: Iterable[Case], expression: str) -> tuple[Case, ...]:
     predicate = parse_expression(expression)
     selected = tuple(case for case in all_cases if predicate(case.id))
     if not selected:
-        raise UsageError(f"-k {expression}: none of {len(all_cases)} cases is meant; --list shows their names")
+        raise UsageError(f"-k {expression}: none of {len(all_cases)} cases matches; --list shows their names")
     return selected
 
 

@@ -59,7 +59,7 @@ def check_graph(graph: object) -> Graph:
                 raise UsageError(f"graph: its {name} cannot hold {where}")
     first, last = graph.settings.frames or (1, 1)
     if last < first:
-        raise GraphError(f"the frames {first} to {last} of the graph run backwards: the first comes first")
+        raise GraphError(f"the frames {first} to {last} of the graph run backwards: exchange the two")
     return graph
 
 

@@ -47,7 +47,7 @@ class DrawingThread:
     def call(self, function: Callable[P, R], *args: P.args, **options: P.kwargs) -> R:
         """Call a function on this thread. Raises UsageError where that cannot be."""
         if threading.get_ident() != self.ident:
-            raise UsageError("the first of these frames was rendered on the main thread: take the others there too")
+            raise UsageError("the first of these frames was rendered on the main thread: render the others there too")
         return function(*args, **options)
 
 

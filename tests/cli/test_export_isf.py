@@ -58,7 +58,7 @@ def test_reasons_name_nodes(cli, graphs, tmp_path: Path) -> None:
     links = {"back.image": "light.out", "outputs.image": "back.out"}
     graph = graphs(nodes={"back": nodes["back"]}, links=links)
     result = cli("export-isf", graph, "-o", tmp_path / "no.fs")
-    assert result.code == 3 and "node 'back' makes every frame of the one before" in result.err
+    assert result.code == 3 and "node 'back' remembers the frame before" in result.err
     assert not (tmp_path / "no.fs").exists()
 
 

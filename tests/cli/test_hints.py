@@ -46,7 +46,7 @@ def test_data_in_place_of_color(cli, graphs, shot, tmp_path, layer, is_told):
     path = graphs(nodes={"light": {"type": "exposure"}})
     result = cli("render", path, "-i", f"beauty={shot}:{layer}", "-o", tmp_path / "out.exr")
     assert result.code == 0
-    assert (f"'light' is about color, and the layer {layer} is data" in result.err) == is_told
+    assert (f"'light' works on color, but the layer {layer} is data" in result.err) == is_told
 
 
 def test_misspelt_keys_are_told_beside_what_follows_from_them(cli, tmp_path):

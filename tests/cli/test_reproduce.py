@@ -163,7 +163,7 @@ def test_an_input_that_has_moved(cli, graphs, shot, tmp_path, monkeypatch):
     store.mkdir(parents=True)
     moved = shot.rename(store / "shot.exr")
     lost = cli("reproduce", picture)
-    assert lost.code == 4 and "what it was made of is not there: shot.exr (beauty)" in lost.err
+    assert lost.code == 4 and "files that it was made from are missing: shot.exr (beauty)" in lost.err
     assert "-i beauty=FILE" in lost.err and "--search DIR" in lost.err
     assert again(cli, picture, "-i", f"beauty={moved}")["same"]
     assert again(cli, picture, "--search", tmp_path / "store")["same"]
@@ -252,7 +252,7 @@ def test_nothing_beyond_the_fence_is_read_or_written(cli, graphs, shot, tmp_path
     inside.mkdir()
     picture = render(cli, graphs(), inside / "out.exr", "-i", shot)
     lost = cli("reproduce", picture, "--root", inside, "--search", tmp_path)
-    assert lost.code == 4 and "what it was made of is not there: shot.exr (beauty)" in lost.err
+    assert lost.code == 4 and "files that it was made from are missing: shot.exr (beauty)" in lost.err
     shutil.copy(shot, inside)
     assert again(cli, picture, "--root", inside)["same"]
     assert sorted(path.name for path in inside.iterdir()) == ["out.exr", "shot.exr"]

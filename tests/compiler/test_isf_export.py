@@ -149,7 +149,7 @@ def test_two_pictures(renderer: Renderer) -> None:
 def test_what_no_shader_can_do_is_listed_by_node() -> None:
     graph = chain(made("feedback"), made("exposure"))
     assert export_isf(graph, TARGET, LazyResourceProvider(sandbox=UNRESTRICTED)).reasons == (
-        ("n0", "makes every frame of the one before"),
+        ("n0", "remembers the frame before"),
     )
 
 

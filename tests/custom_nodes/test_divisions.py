@@ -137,7 +137,7 @@ def test_constants_that_only_the_driver_can_tell(run: Run, divisor: str, sign: s
 
 def test_a_case_that_only_the_driver_can_tell() -> None:
     text = "vec4 f(vec4 image) {\n switch (3) { case 8 / int(cos(3.14159265)): return image; }\n return image; }"
-    with pytest.raises(CodeFault, match="line 2: a case is divided by"):
+    with pytest.raises(CodeFault, match="line 2: a case label divides by"):
         node_type(Code("glsl", text))
 
 

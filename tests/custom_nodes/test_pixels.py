@@ -149,7 +149,7 @@ def test_code_with_a_fault_stands_in_the_graph_and_says_why(renderer: Renderer) 
       "links": {"x.image": "inputs.image", "outputs.out": "x.out"}}"""
     graph = document.loads(text, sandbox=UNRESTRICTED)
     assert isinstance(graph.nodes["x"], Unknown)
-    with pytest.raises(GraphError, match="node 'x': its code, line 2: the name 'image' is there twice"):
+    with pytest.raises(GraphError, match="node 'x': its code, line 2: the name 'image' is used twice: choose another"):
         renderer.render(graph, RenderRequest({"image": PICTURE}))
     assert document.loads(document.dumps(graph), sandbox=UNRESTRICTED) == graph
 

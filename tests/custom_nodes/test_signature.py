@@ -115,7 +115,7 @@ def test_a_comment_that_is_a_sentence_is_one() -> None:
     [
         ("", 1, "there is no function in it"),
         ("float x;", 1, "there is no function in it"),
-        ("\nvec4 f(vec4 a,\nvec4 a) { return a; }", 3, "the name 'a' is there twice"),
+        ("\nvec4 f(vec4 a,\nvec4 a) { return a; }", 3, "the name 'a' is used twice: choose another"),
         ("vec4 f(vec4 pixel) { return pixel; }", 1, "'pixel' means something else here"),
         *(
             (f"vec4 f(vec4 {name}) {{ return {name}; }}", 1, f"'{name}' means something else here")
@@ -123,7 +123,7 @@ def test_a_comment_that_is_a_sentence_is_one() -> None:
         ),
         ("void f(vec4 a) {}", 1, "'f' makes nothing"),
         ("vec4 f(vec4 a, out float b) { return a; }", 1, "returns a vec4 and has out parameters"),
-        ("void f(out vec4 a, vec4 b) {}", 1, "out parameters come last"),
+        ("void f(out vec4 a, vec4 b) {}", 1, "put out parameters last"),
         ("vec4 f(sampler2D a) { return vec4(0); }", 1, "'a' has the type sampler2D"),
         ("vec4 f(int a) { return vec4(0); }", 1, "'a' is a int, which no picture holds"),
         ("mat3 f(vec4 a) { return mat3(0); }", 1, "the result has the type mat3"),
@@ -139,12 +139,16 @@ def test_a_comment_that_is_a_sentence_is_one() -> None:
         ('vec4 f(float b // = 1, meters"\n) { return vec4(b); }', 1, "says nothing of a parameter"),
         ('vec4 f(float b // = 1, "\n) { return vec4(b); }', 1, "says nothing of a parameter"),
         ("vec4 f(vec3 b // = (1, 2)\n) { return vec4(1); }", 1, "a vec3 is 3 numbers"),
-        ("vec4 f(int b // = 1.5\n) { return vec4(b); }", 1, "an int is a whole number"),
-        ("vec4 f(bool b // = 1.5\n) { return vec4(b); }", 1, "a bool is true or false"),
+        ("vec4 f(int b // = 1.5\n) { return vec4(b); }", 1, "an int must be a whole number"),
+        ("vec4 f(bool b // = 1.5\n) { return vec4(b); }", 1, "a bool must be true or false"),
         ("vec4 f(int b // = c, one of a | b\n) { return vec4(b); }", 1, "none of its choices"),
         ("vec4 f(float b // = a, one of a | b\n) { return vec4(b); }", 1, "so it is an int"),
         ("vec4 f(float b // = 1, color\n) { return vec4(b); }", 1, "so it is a vec4 or vec3"),
-        ("vec4 f(vec4 a /* wrap */, vec4 b /* black */) { return a_at(pixel); }", 1, "choose one edge"),
+        (
+            "vec4 f(vec4 a /* wrap */, vec4 b /* black */) { return a_at(pixel); }",
+            1,
+            r"different edges \(black, wrap\): choose one for all of them",
+        ),
     ],
 )
 def test_faults_name_their_line(text: str, line: int, said: str) -> None:

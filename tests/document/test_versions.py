@@ -58,7 +58,9 @@ def test_an_upgrade_keeps_unknown_values() -> None:
 
 
 def test_an_upgrade_that_fails_says_where() -> None:
-    with pytest.raises(DocumentError, match=r"nodes\.g\.values: these are no values of version 2 of 'glow'"):
+    with pytest.raises(
+        DocumentError, match=r"nodes\.g\.values: the values do not fit version 2 of 'glow': correct them"
+    ):
         loads(glow(2, {"radius": "wide"}), catalogue={"glow": Glow}, sandbox=UNRESTRICTED)
     with pytest.raises(DocumentError, match=r"nodes\.g\.version: version 4 of 'glow' is newer than 3"):
         loads(glow(4, {}), catalogue={"glow": Glow}, sandbox=UNRESTRICTED)

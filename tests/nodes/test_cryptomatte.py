@@ -181,7 +181,7 @@ def test_a_file_without_mattes_says_so(run, tmp_path):
     media.write_picture(
         path, {"image": np.ones((4, 4, 4), np.float32)}, kinds={"image": Kind.IMAGE}, sandbox=UNRESTRICTED
     )
-    with pytest.raises(GraphError, match="holds nothing for its output"):
+    with pytest.raises(GraphError, match="has no layer for its output"):
         run(Cryptomatte(path=str(path)), output="matte")
-    with pytest.raises(GraphError, match="holds nothing for its output"):
+    with pytest.raises(GraphError, match="has no layer for its output"):
         run(Cryptomatte(path=SAMPLE, layer="asset"), output="matte")

@@ -78,7 +78,7 @@ def test_functions_give_what_they_give_in_expressions(run, name):
     ("[a.r, b.g] + a", "a list of 2 and a list of 4 numbers cannot be combined"),
     ("p.r", "a number has no channel 'r'"),
     ("a.q", "there is no channel 'q'"),
-    ("noise(x)", "link a noise"),
+    ("noise(x)", "link a noise node"),
     ("__import__('os')", "there is no function '__import__'"),
     ("vec4(1)", "there is no function 'vec4'"),
     ("a; discard", "';' cannot be part of an expression"),

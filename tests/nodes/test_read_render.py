@@ -168,7 +168,7 @@ def test_the_camera_goes_on(renderer, tmp_path):
 
 def test_what_a_file_does_not_hold_is_said(renderer, tmp_path):
     path = write(tmp_path / "a.exr", {"RGB": COLOR})
-    with pytest.raises(GraphError, match="node 'node': its file holds nothing for its output 'depth'"):
+    with pytest.raises(GraphError, match="node 'node': its file has no layer for its output 'depth'"):
         shown(renderer, ReadRender(path=path), "depth")
     with pytest.raises(InputError, match=r"gone\.exr"):
         shown(renderer, ReadRender(path=str(tmp_path / "gone.exr")), "color")

@@ -138,7 +138,7 @@ def test_looking_at_another_frame_of_a_memory_is_refused(engine):
     graph = trail(frames=(1, 8)).add("offset", TimeOffset(frames=-1)).disconnect(Port("outputs", "out"))
     graph = graph.connect(Port("trail", "out"), Port("offset", "image"))
     graph = graph.connect(Port("offset", "out"), Port("outputs", "out"))
-    with pytest.raises(GraphError, match="'trail' makes every frame of the one before"):
+    with pytest.raises(GraphError, match="'trail' remembers the frame before"):
         reel(engine, graph).render_frame(3)
 
 

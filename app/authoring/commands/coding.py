@@ -77,5 +77,5 @@ def read_linked_code(document: OpenDocument, id: str) -> Code:
     """The code of a node of the current graph whose code is in a file. Raises GraphError for other nodes."""
     code = coding.read_node_code(document.graph.nodes.get(id), document.graph.folder, sandbox=document.sandbox)
     if code is None or not code.file:
-        raise GraphError(f"the code of node '{id}' is in no file")
+        raise GraphError(f"the code of node '{id}' is in no file: move it to one first")
     return code

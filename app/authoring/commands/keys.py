@@ -167,4 +167,4 @@ def to_scalar(value: object) -> Scalar:
         return tuple(float(part) for part in value)
     if isinstance(value, bool | int | float | str):
         return value
-    raise GraphError(f"{value!r} cannot be a key")
+    raise GraphError(f"{value!r} cannot be a key: set a number, or a list of numbers")

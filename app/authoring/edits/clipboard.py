@@ -95,7 +95,7 @@ def paste_part(
     names = {**combined.names, **ends}
     put = {key: name for key, name in names.items() if name not in existing}
     if not put:
-        raise GraphError("there is nothing in it to paste")
+        raise GraphError("there is nothing to paste: copy nodes, frames or comments first")
     spots = _place_part({key: spot for key, spot in positions(part).items() if key in put}, places, at, offset)
     after = with_places(combined.graph, {put[key]: spot for key, spot in spots.items()})
     folded = [name for key, name in put.items() if key.port and entry(part, key).get("collapsed") is True]

@@ -114,7 +114,7 @@ class RecoveryFile:
         """A sentence if another editor has the same file open, else ""."""
         if self._claim is None or not self._claim.is_shared():
             return ""
-        return "another editor has this document open too: who saves last replaces what the other saved"
+        return "another editor has this document open too: the last one to save overwrites what the other saved"
 
     def note(self, graph: Graph, path: Path | None, dirty: bool) -> None:
         """Note the current document; costs nothing if nothing changed."""

@@ -161,7 +161,7 @@ class _IsfExporter:
                 name = find_control_name(held[0])
                 self.notes.append(f"control '{name}' keeps its value: it changes more than numbers")
         if FRAME in model.held_knobs:
-            self.notes.append(f"it shows frame {self.first} at all times: more than numbers change with time")
+            self.notes.append(f"it always shows frame {self.first}: more than numbers change with time")
         if WIDTH in model.held_knobs:
             width, height = self.size
             self.notes.append(f"it is made for {width}x{height} pixels, and looks different at others: see --size")

@@ -81,7 +81,7 @@ def find_obstacles(
                 obstacle = "a table of numbers" if picture.path == "numbers" else f"the file '{picture.path}'"
                 yield op.owner, f"reads {obstacle}, which no shader can hold"
     for port in program.memories:
-        yield port.node, "makes every frame of the one before"
+        yield port.node, "remembers the frame before"
 
 
 _OBSTACLES: Mapping[type[Op], str] = {

@@ -168,12 +168,9 @@ class Recorder:
         overlap: Overlap | Mapping[str, Overlap] | None,
         light: bool,
     ) -> Gather:
-        """The operation of a draw. A picture with one channel that stands for an Image still gets a vec4 accessor, as
-        the shader of the node is written for Images.
-        """
+        # A picture with one channel that stands for an Image has a vec4 accessor: shaders are written for Images.
         overlaps = overlap if isinstance(overlap, Mapping) else dict.fromkeys(arguments, overlap)
-        accessors: list[Accessor] = []
-        plain_arguments: dict[str, Argument] = {}
+        accessors, plain_arguments = list[Accessor](), dict[str, Argument]()
         for name, item in arguments.items():
             if isinstance(item, (Socket, DrawnPicture)):
                 operand = self._find_operand(item)
@@ -183,13 +180,12 @@ class Recorder:
                 accessors.append(Accessor(name, glsl_type(channels), operand, around))
             else:
                 plain_arguments[name] = item
-        parameters = self._make_parameters(self._find_function(function), plain_arguments)
         return Gather(
             shapes,
             self._owner,
             self._find_file(function),
             function,
-            parameters,
+            self._make_parameters(self._find_function(function), plain_arguments),
             self._find_choices(function),
             accessors=tuple(accessors),
             edge=edge,
@@ -377,7 +373,9 @@ class Recorder:
     def _find_pixels(self, item: Pixels) -> DrawnPicture:
         operand = self._find_operand(item)
         if isinstance(operand, UniformConstant):
-            raise ShaderError(self._owner, f"nodes/{self._shader}.py", 1, "a constant input cannot be filtered")
+            raise ShaderError(
+                self._owner, f"nodes/{self._shader}.py", 1, "a filter cannot read a constant: link a picture"
+            )
         if isinstance(item, Socket):
             return self._wrap(operand, item.name == self._inputs.narrow)
         return self._wrap(operand, isinstance(item, DrawnPicture) and item.is_narrow)

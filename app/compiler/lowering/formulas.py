@@ -80,7 +80,9 @@ class FormulaWriter:
     ) -> FormulaPart:
         """A call of a function."""
         if function.name in _RANDOM:
-            raise ExpressionError(text, position, f"{function.name} is not known in a formula for pixels: link a noise")
+            raise ExpressionError(
+                text, position, f"{function.name} cannot be used in a formula for pixels: link a noise node instead"
+            )
         channels = self._combine(text, position, arguments)
         codes = [part.code for part in arguments]
         if function.name in ("min", "max"):

@@ -97,7 +97,10 @@ class GraphAtFrames:
             flat = self.flat_at(moment[1])
             if path in flat.unknown:
                 item = flat.unknown[path]
-                fault = item.fault or f"its type '{item.type}' is unknown to this version of Halation"
+                fault = (
+                    item.fault
+                    or f"its type '{item.type}' is unknown to this version of Halation: update it, or remove the node"
+                )
                 raise GraphError(f"node '{path}': {fault}", node=path)
             if moment in visited or path not in flat.nodes:
                 continue

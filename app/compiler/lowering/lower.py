@@ -172,7 +172,10 @@ class Lowering:
             raise GraphError(fault, node=group)
         node = self.flat.nodes.get(port.node)
         if node is not None and port.socket in node.outputs:
-            fault = f"node '{port.node}': its file holds nothing for its output '{port.socket}'"
+            fault = (
+                f"node '{port.node}': its file has no layer for its output '{port.socket}': choose one, or unlink "
+                "the output"
+            )
             raise GraphError(fault, node=port.node)
         if socket is None:
             raise GraphError(

@@ -340,7 +340,7 @@ class NodeLowering:
         context, path, remembers = self._context, inputs.path, isinstance(node, Temporal)
         if remembers and inputs.frame != context.frame:
             raise GraphError(
-                f"node '{path}' makes every frame of the one before, so it cannot be seen at frame {inputs.frame} "
+                f"node '{path}' remembers the frame before, so it cannot be seen at frame {inputs.frame} "
                 f"while frame {context.frame} is rendered: put what changes the time before '{path}'"
             )
         for name in inputs.linked:

@@ -89,7 +89,7 @@ class _HeaderReader:
         except ValueError:
             raise CodeFault(self.first, "the head holds a number that is too long") from None
         if not isinstance(raw, dict):
-            self._fail("the head is a JSON object, in braces")
+            self._fail("the head must be a JSON object, in braces")
         self.raw = cast(Section, raw)
 
     def read(self) -> Header:
@@ -101,7 +101,7 @@ class _HeaderReader:
         used_names: set[str] = set()
         for name in (*(header_input.name for header_input in inputs), *buffers, *imported):
             if name in used_names:
-                self._fail(f"the name '{name}' is there twice", name)
+                self._fail(f"the name '{name}' is used twice: rename one", name)
             used_names.add(name)
         size_names = {
             "WIDTH",
@@ -200,7 +200,7 @@ class _HeaderReader:
         """Read PERSISTENT_BUFFERS, where version 1 of the format lists buffers apart from passes."""
         entries = self.raw.get("PERSISTENT_BUFFERS") or []
         if not isinstance(entries, list | dict):
-            self._fail("PERSISTENT_BUFFERS is a list or an object", "PERSISTENT_BUFFERS")
+            self._fail("PERSISTENT_BUFFERS must be a list or an object", "PERSISTENT_BUFFERS")
         for item in cast("list[Any] | Section", entries):
             inner = cast(Section, entries).get(item) if isinstance(entries, dict) else None
             raw = cast(Section, inner) if isinstance(inner, dict) else {}
@@ -211,7 +211,7 @@ class _HeaderReader:
         if entry is None or entry == "":
             return None
         if not isinstance(entry, str) and not _is_number(entry):
-            fault = f"the {key} of '{name}' is {json.dumps(entry)[:40]}: it is a formula, such as \"$WIDTH/2.0\""
+            fault = f"the {key} of '{name}' must be a formula such as \"$WIDTH/2.0\", not {json.dumps(entry)[:40]}"
             self._fail(fault, name)
         try:
             return read_size(str(entry))
@@ -228,14 +228,14 @@ class _HeaderReader:
         elif isinstance(section, dict):
             items = [(name, self._read_section(item, "IMPORTED")) for name, item in cast(Section, section).items()]
         else:
-            self._fail("IMPORTED is an object", "IMPORTED")
+            self._fail("IMPORTED must be an object", "IMPORTED")
         paths: dict[str, str] = {}
         for name_entry, raw in items:
             name, path = self._read_name(name_entry, "an imported picture"), self._read_text(raw, "PATH")
             parts = PurePosixPath(path).parts
             if not parts or "\\" in path or ":" in path or path.startswith("/") or ".." in parts or "\0" in path:
                 self._fail(
-                    f"the imported picture '{name}' has the PATH '{path[:60]}': it is the name of a file in the "
+                    f"the imported picture '{name}' has the PATH '{path[:60]}': name a file in the "
                     "folder of the shader or in one below",
                     name,
                 )
@@ -249,11 +249,11 @@ class _HeaderReader:
         raise CodeFault(self.source.count("\n", 0, at) + 1 if at >= 0 else self.first, sentence)
 
     def _refuse_constant(self, word: str) -> NoReturn:
-        self._fail(f"the head is no JSON: {word} is no number there")
+        self._fail(f"the head is not valid JSON: {word} is not a number")
 
     def _read_section(self, item: Any, key: str) -> Section:
         if not isinstance(item, dict):
-            self._fail(f"{key} holds {json.dumps(item)[:40]}, which is no object", key)
+            self._fail(f"{key} holds {json.dumps(item)[:40]}, which is not a JSON object", key)
         return cast(Section, item)
 
     def _read_list(self, raw: Section, key: str) -> list[Any]:
@@ -261,7 +261,7 @@ class _HeaderReader:
         if entries is None:
             return []
         if not isinstance(entries, list):
-            self._fail(f"{key} is a list, in brackets", key)
+            self._fail(f"{key} must be a list, in brackets", key)
         return cast("list[Any]", entries)
 
     def _read_text(self, raw: Section, key: str) -> str:
@@ -271,7 +271,7 @@ class _HeaderReader:
     def _read_name(self, name: Any, owner: str) -> str:
         if not isinstance(name, str) or not _NAME.fullmatch(name) or len(name) > 200:
             self._fail(
-                f"{owner} has the name {json.dumps(name)[:60]}: GLSL has names of letters, digits and _",
+                f"{owner} has the name {json.dumps(name)[:60]}: use letters, digits and _, as GLSL does",
                 name if isinstance(name, str) else "",
             )
         if _RESERVED_NAMES.fullmatch(name):

@@ -35,7 +35,7 @@ def draw_swatches(fields: Fields, id: str, color: RGBA, width: float, alpha: boo
             swatch_edit = Edit(kept_color if alpha else (*kept_color[:3], color[3]))
         record(fields, f"swatch {id} {index}")
         draw_swatch(fields, item_rect(), kept_color, imgui.is_item_hovered() or imgui.is_item_focused())
-        tip(f"{hexadecimal(kept_color)}: click to use it. Right click or Delete: no longer keep it.")
+        tip(f"{hexadecimal(kept_color)}: click to use it. Right click or Delete removes it.")
         is_deleted = imgui.is_item_focused() and imgui.is_key_pressed(imgui.Key.delete)
         if is_deleted or (imgui.is_item_hovered() and imgui.is_mouse_released(imgui.MouseButton_.right)):
             removed_color = kept_color

@@ -113,7 +113,7 @@ class EndView:
             "description",
             end.doc,
             lambda doc: session.apply(SetInput(name, doc=doc)),
-            "A description of it",
+            "A description, shown as a tooltip",
         )
 
     def _space(self, rows: Rows, port: Port, end: Input, bound: bool) -> None:

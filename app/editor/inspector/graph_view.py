@@ -230,8 +230,8 @@ class GraphView:
     def _preroll(self, rows: Rows) -> None:
         session = rows.context.session
         preroll = session.root.settings.preroll
-        doc = "How many frames before the one that is wanted nodes with a memory look back. Without one they begin "
-        doc += "at the first frame, so that a frame is the same wherever a rendering begins."
+        doc = "How many frames before the requested one nodes with a memory start. Without a number they start "
+        doc += "at the first frame, so that a frame is the same wherever a render begins."
         rows.name("preroll", "pre-roll", doc=doc, changed=preroll is not None)
         width = rows.field()
         if preroll is None:

@@ -261,8 +261,8 @@ _SWITCHES = (
         "solo",
         icons.ICON_FA_STAR,
         icons.ICON_FA_STAR_HALF_STROKE,
-        "Only this one and others like it shine. Click to end it",
-        "Click to let only this one shine",
+        "Solo: only this light and other solo lights are on. Click to end it",
+        "Click for solo: only this light is on",
     ),
     _Switch(
         "on", icons.ICON_FA_EYE, icons.ICON_FA_EYE_SLASH, "On. Click to switch it off", "Off. Click to switch it on"

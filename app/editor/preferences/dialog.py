@@ -105,13 +105,13 @@ class PreferencesDialog:
         label("Autosave every", _LABELS)
         self._draw_number("autosave", "%.1f s", 0.5, 10.0)
         draw_wrapped(
-            self._context.palette.dim, "Unsaved work is saved apart from your files, and offered after a crash."
+            self._context.palette.dim, "Unsaved work is saved separately from your files, and offered after a crash."
         )
         _draw_heading(self._context, "Memory")
         label("For pictures", _LABELS)
         self._draw_number("memory_budget", "%.0f MiB", 64.0, 16384.0, logarithmic=True)
         draw_wrapped(
-            self._context.palette.dim, "Memory on the graphics card that keeps results. Takes effect at the next start."
+            self._context.palette.dim, "Graphics memory in which results are kept. Takes effect at the next start."
         )
         _draw_heading(self._context, "Presets")
         self._draw_folders(

@@ -53,7 +53,7 @@ _LOOK = Lesson(
             adds("vignette"),
         ),
         Step(
-            "Places have handles on the picture. Drag the ring to where the picture shall be brightest.",
+            "Positions have handles on the picture. Drag the ring to where the picture should be brightest.",
             "handle vignette.center",
             changes("vignette.center"),
         ),

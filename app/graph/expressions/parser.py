@@ -141,7 +141,7 @@ class _Parser(Generic[Part]):
             return condition
         yes = self._parse_choice(token)
         if self._take_if(":") is None:
-            self._fail(self._next, "':' is missing: a choice is written condition ? yes : no")
+            self._fail(self._next, "':' is missing: write a choice as condition ? yes : no")
         no = self._parse_choice(token)
         self._depth -= 1
         code = self._maker.make_choice(self._text, token.start, condition[0], yes[0], no[0])
@@ -230,7 +230,7 @@ class _Parser(Generic[Part]):
         if token.kind == "bracket" and token.text == "[":
             parts = self._parse_list(token)
             if not parts:
-                self._fail(token, "a list has at least one number")
+                self._fail(token, "a list must have at least one number")
             return self._check_depth(
                 token, self._maker.make_list(self._text, token.start, [code for code, _ in parts]), *parts
             )
@@ -278,7 +278,7 @@ class _Parser(Generic[Part]):
         if token.kind == "unknown":
             self._fail(token, _describe_stray(token))
         if token.text == "if":
-            self._fail(token, "a choice is written condition ? yes : no")
+            self._fail(token, "write a choice as condition ? yes : no")
         if token.text in (")", "]"):
             self._fail(token, f"'{token.text}' has no opening bracket")
         if token.kind == "operator" or token.text in (",", "else"):

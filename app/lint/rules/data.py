@@ -31,7 +31,7 @@ def find(sheet: GraphFacts) -> Iterator[Problem]:
     for id, item in sheet.list_having(Trait.NEEDS_COLOR):
         if (source := sheet.first(id)) and (layer := _data(sheet, source)):
             name = next(iter(item.inputs))
-            sentence = f"'{id}' is about color, and '{source}' is data ({layer}): link a picture to '{id}.{name}'"
+            sentence = f"'{id}' works on color, but '{source}' is data ({layer}): link a picture to '{id}.{name}'"
             yield Problem(id, name, sentence, DATA_AS_COLOR, f"links.{id}.{name}")
 
 
@@ -61,7 +61,7 @@ def find_data_bindings(graph: Graph, files: Mapping[str, str]) -> Iterator[str]:
         for target, source in graph.links.items():
             item = graph.nodes.get(target.node)
             if source == Port(INPUTS, name) and Trait.NEEDS_COLOR in getattr(type(item), "traits", ()):
-                yield f"-i {name}={file}: '{target.node}' is about color, and the layer {layer} is data"
+                yield f"-i {name}={file}: '{target.node}' works on color, but the layer {layer} is data"
 
 
 CHECKS = (Check(DATA_AS_COLOR, find),)

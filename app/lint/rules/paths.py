@@ -62,7 +62,9 @@ def absolute_path(sheet: GraphFacts) -> Iterator[Problem]:
     """Finds absolute paths."""
     for node, socket, at, path in list_paths(sheet.graph):
         if is_absolute(path):
-            sentence = f"{who(node, socket)}: '{path}' is there on one machine alone: name it from the graph's folder"
+            sentence = (
+                f"{who(node, socket)}: '{path}' is absolute, so other machines miss it: write it relative to the graph"
+            )
             yield Problem(node, socket, sentence, ABSOLUTE_PATH, at)
 
 

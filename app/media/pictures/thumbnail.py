@@ -49,7 +49,7 @@ def load_thumbnail(path: str | Path, sandbox: Sandbox) -> Array:
     pixels = picture.get_pixels(oiio.UINT8) if picture.read() else None
     if pixels is None or pixels.shape[2] != 3:
         picture.geterror()
-        raise InputError(f"{path}: is no small picture")
+        raise InputError(f"{path}: is not a picture of 8 bits with three channels, as thumbnails are")
     return np.asarray(pixels)
 
 

@@ -66,7 +66,7 @@ class Runner:
         holds its outputs in memory. Raises DeviceError if such a plan is to be timed.
         """
         if self._executor.closed:
-            raise UsageError("this renderer is closed: make another one")
+            raise UsageError("this renderer is closed: create another one")
         if plan.tiling is not None:
             if timings is not None:
                 raise DeviceError(f"{plan.tiling.why}; render smaller with --scale or --size")

@@ -208,6 +208,6 @@ def describe_missing(located_files: Sequence[LocatedFile], path: Path) -> InputE
     names = ", ".join(f"{used.pattern or used.name} ({used.owner.removeprefix(f'{INPUTS}.')})" for used in missing)
     owner = missing[0].owner.removeprefix(f"{INPUTS}.")
     return InputError(
-        f"{path}: what it was made of is not there: {names}; say where with -i {owner}=FILE, or name a folder to look "
-        "in with --search DIR"
+        f"{path}: files that it was made from are missing: {names}; say where with -i {owner}=FILE, or "
+        "name a folder to look in with --search DIR"
     )

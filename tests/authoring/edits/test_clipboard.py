@@ -142,5 +142,5 @@ def test_a_damaged_graph_says_where():
 
 
 def test_an_empty_graph_has_nothing_to_paste():
-    with pytest.raises(GraphError, match="nothing in it to paste"):
+    with pytest.raises(GraphError, match="nothing to paste: copy nodes"):
         paste_part(chain(1), Graph().add("x", Gain()).remove("x"), {})

@@ -55,7 +55,7 @@ def test_saved_and_loaded(tmp_path: Path) -> None:
     save_thumbnail(tmp_path / "a.png", pixels, sandbox=UNRESTRICTED)
     assert np.array_equal(load_thumbnail(tmp_path / "a.png", sandbox=UNRESTRICTED), pixels)
     (tmp_path / "b.png").write_bytes(b"no")
-    for name, reason in (("b.png", "no small picture"), ("c.png", "there is no such file")):
+    for name, reason in (("b.png", "not a picture of 8 bits"), ("c.png", "there is no such file")):
         with pytest.raises(InputError, match=reason):
             load_thumbnail(tmp_path / name, sandbox=UNRESTRICTED)
 
