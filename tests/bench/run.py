@@ -25,7 +25,7 @@ from bench.programs import HERE, OURS, find_programs
 from bench.report import format_results
 from bench.results import Results
 from bench.started import run_process
-from bench.tasks import PICTURES, SIZES, TASKS
+from bench.tasks import PICTURES, SEED, SIZES, TASKS
 
 STILL = 1920
 """Wider pictures come without the sequence: 24 frames of them take too long."""
@@ -43,6 +43,9 @@ def read_options() -> argparse.Namespace:
     reader.add_argument("--programs", default="", help="some of those that are installed; by default all of them")
     reader.add_argument("--rounds", type=int, default=5, help="how often each program does each task")
     reader.add_argument("--repeat", type=int, default=3, help="how often in each of half as many rounds in memory")
+    reader.add_argument(
+        "--seed", default="", help="vary sigmas, lengths and strengths: the same numbers for all programs"
+    )
     reader.add_argument("--parts", default="whole,memory,extras", help="what to measure")
     reader.add_argument(
         "--venvs",
@@ -57,6 +60,8 @@ def read_options() -> argparse.Namespace:
     reader.add_argument("--from", dest="earlier", type=Path, metavar="FILE", help="print these, measure nothing")
     reader.add_argument("--table", action="store_true", help="print what is wanted, too, and whether it is reached")
     arguments = reader.parse_args()
+    if arguments.seed and os.environ.get(SEED) != arguments.seed:  # what is imported already has taken its numbers
+        os.execve(sys.executable, [sys.executable, *sys.argv], {**os.environ, SEED: arguments.seed})
     for name, choices in (("sizes", SIZES), ("tasks", TASKS), ("parts", ("whole", "memory", "extras"))):
         setattr(arguments, name, [word for word in getattr(arguments, name).split(",") if word])
         for word in getattr(arguments, name):
@@ -92,6 +97,7 @@ def describe_machine() -> dict[str, object]:
         "processors": len(os.sched_getaffinity(0)),
         "system": platform.platform(),
         "python": platform.python_version(),
+        **({"seed": os.environ[SEED]} if os.environ.get(SEED) else {}),
     }
 
 

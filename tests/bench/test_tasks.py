@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +16,7 @@ from halation import document
 from halation.renderer import RenderRequest
 from halation.resources.sandbox import UNRESTRICTED
 
+ROOT = Path(__file__).parents[1]
 WIDTH, HEIGHT = tasks.SIZES["tiny"]
 ALIKE = 3e-4
 """RMS of the difference, as a part of the reference's: writing half floats alone costs 2.1e-4."""
@@ -53,3 +58,30 @@ def test_pictures_are_what_the_tasks_ask_for():
     assert found["depth"].min() > 0.0 and np.abs(found["noise"]).max() <= 1.0
     np.testing.assert_allclose(np.linalg.norm(found["normal"], axis=2), 1.0, atol=1e-4)
     assert all(np.isfinite(one.astype(np.float32)).all() for one in found.values())
+
+
+def test_a_seed_changes_numbers_of_tasks_and_graphs_alike():
+    """In a process of its own: the numbers are taken when the module is imported."""
+    command = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-q",
+        "-p",
+        "no:cacheprovider",
+        f"{__file__}::test_a_graph_computes_its_task",
+    ]
+    run = subprocess.run(command, env={**os.environ, tasks.SEED: "5"}, capture_output=True, text=True)
+    assert run.returncode == 0 and f"{len(tasks.TASKS)} passed" in run.stdout, run.stdout
+    code = "from bench.tasks import *; print(*SIGMAS.values(), PUSH, TASKS['T10'].values(96)['blur.sigma'])"
+    printed = [
+        subprocess.run(
+            [sys.executable, "-c", code],
+            env={**os.environ, "PYTHONPATH": str(ROOT), tasks.SEED: seed},
+            capture_output=True,
+            text=True,
+        ).stdout.split()
+        for seed in ("5", "5", "6")
+    ]
+    assert printed[0] == printed[1] and len(printed[0]) == 5
+    assert all(first != second for first, second in zip(printed[0], printed[2], strict=True))
