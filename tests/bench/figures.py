@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import median
 from typing import Any
@@ -219,10 +219,10 @@ def _compute_extras(extras: Mapping[str, Any]) -> Iterator[Row]:
     )
 
 
-def format_table(results: Results) -> str:
+def format_table(rows: Iterable[Row]) -> str:
     """The table in Markdown."""
     lines = ["| what | wanted, at most | measured | reached |", "|---|---|---|---|"]
-    for row in compute_rows(results):
+    for row in rows:
         known = ", ".join(str(one) for one in row.figures if one.number is not None) or "not measured"
         lines.append(f"| {row.what} | {row.wanted} | {known} | {row.verdict} |")
     return "\n".join(lines)

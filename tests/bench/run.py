@@ -18,8 +18,9 @@ from pathlib import Path
 
 sys.path.append(str(Path(__file__).parents[1]))
 
+from bench.conditions import compute_condition_rows, list_presets, measure_presets, measure_threads
 from bench.extras import measure_extras
-from bench.figures import format_table
+from bench.figures import compute_rows, format_table
 from bench.measuring import Place, measure_in_memory, measure_processes
 from bench.programs import HERE, OURS, find_programs
 from bench.report import format_results
@@ -30,6 +31,7 @@ from bench.tasks import PICTURES, SEED, SIZES, TASKS
 STILL = 1920
 """Wider pictures come without the sequence: 24 frames of them take too long."""
 
+PARTS = ("whole", "memory", "extras", "presets", "threads")
 Say = Callable[[str], None]
 
 
@@ -46,7 +48,7 @@ def read_options() -> argparse.Namespace:
     reader.add_argument(
         "--seed", default="", help="vary sigmas, lengths and strengths: the same numbers for all programs"
     )
-    reader.add_argument("--parts", default="whole,memory,extras", help="what to measure")
+    reader.add_argument("--parts", default="whole,memory,extras", help=f"some of {', '.join(PARTS)}")
     reader.add_argument(
         "--venvs",
         type=Path,
@@ -62,7 +64,7 @@ def read_options() -> argparse.Namespace:
     arguments = reader.parse_args()
     if arguments.seed and os.environ.get(SEED) != arguments.seed:  # what is imported already has taken its numbers
         os.execve(sys.executable, [sys.executable, *sys.argv], {**os.environ, SEED: arguments.seed})
-    for name, choices in (("sizes", SIZES), ("tasks", TASKS), ("parts", ("whole", "memory", "extras"))):
+    for name, choices in (("sizes", SIZES), ("tasks", TASKS), ("parts", PARTS)):
         setattr(arguments, name, [word for word in getattr(arguments, name).split(",") if word])
         for word in getattr(arguments, name):
             if word not in choices:
@@ -111,7 +113,7 @@ def main() -> None:
     results = Results.load(arguments.earlier) if arguments.earlier else measure(arguments, say)
     print(format_results(results, Results.load(arguments.against) if arguments.against else None))
     if arguments.table:
-        print("\n" + format_table(results))
+        print("\n" + format_table([*compute_rows(results), *compute_condition_rows(results.extras)]))
 
 
 def measure(arguments: argparse.Namespace, say: Say) -> Results:
@@ -144,6 +146,12 @@ def measure(arguments: argparse.Namespace, say: Say) -> Results:
             size = arguments.sizes[0]
             place = Place(size, prepare_pictures(arguments.data, size, say), Path(output, size))
             results.extras = {"size": size, **measure_extras(place, arguments.rounds, arguments.repeat, say)}
+        if "presets" in arguments.parts:
+            results.extras["presets"] = measure_presets(list_presets(), arguments.rounds, say)
+        if "threads" in arguments.parts:
+            size = arguments.sizes[0]
+            place = Place(size, prepare_pictures(arguments.data, size, say), Path(output, size))
+            results.extras["threads"] = measure_threads(place, arguments.rounds, say)
     if arguments.json:
         results.save(arguments.json)
     return results
