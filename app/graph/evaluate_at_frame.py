@@ -7,12 +7,12 @@ from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
 
-from halation.nodes import ItemSet, Plain, Scalar, Value
+from halation.nodes import ItemSet, Node, Plain, Scalar, Value
 
 from ..errors import GraphError
 from .animation import ANIMATED, Animation, animation_type_fault
 from .expressions import Expression
-from .graph import Graph, Group
+from .graph import Graph, Group, Item
 from .keys import Keys, round_keys
 from .lookup import split_socket
 from .model import Port, Settings
@@ -91,6 +91,8 @@ def find_named_value(graph: Graph, name: str) -> tuple[Port, int | None]:
     elif rest:
         if head not in graph.nodes:
             raise GraphError(f"there is no node '{head}'{did_you_mean(head, graph.nodes)}")
+        if len(rest) == 1 and _is_animated_number(graph.nodes[head], rest[0]):
+            return Port(head, rest[0]), None  # the usual case
         start, item, words = Port(head, ""), graph.node(head), rest
     else:
         names = [*graph.controls, *(f"{node}." for node in graph.nodes)]
@@ -107,6 +109,12 @@ def find_named_value(graph: Graph, name: str) -> tuple[Port, int | None]:
     if channel >= width:
         raise GraphError(f"'{name}': '{port}' has no channel '{'.'.join(rest)}'")
     return port, channel
+
+
+def _is_animated_number(item: Item, name: str) -> bool:
+    """True for a value of a node that a name means by itself: no named items, which have fields, and no text."""
+    value = item.values.get(name) if isinstance(item, Node) else None
+    return value is not None and value.items is None and value.type in ANIMATED
 
 
 class _FrameEvaluation:
