@@ -58,7 +58,7 @@ def path_values() -> Iterator[tuple[type[Node], str]]:
                 yield kind, name
 
 
-def _wrap(node: Tree, output: str, **parts: object) -> Tree:
+def wrap_node(node: Tree, output: str, **parts: object) -> Tree:
     return {
         "halation": 1,
         "settings": {"size": [16, 16]},
@@ -75,7 +75,7 @@ def fields(name: str) -> Iterator[tuple[str, str, Tree]]:
         for ending in ("exr", "cube", "clf", "obj", "gltf", "ply", "mov"):
             path = f"{name}.{ending}"
             values: Tree = {value: path} if kind.id != "scene" else {"scene": "file", value: path}
-            tree = _wrap({"type": kind.id, "values": values}, next(iter(kind.outputs), "out"))
+            tree = wrap_node({"type": kind.id, "values": values}, next(iter(kind.outputs), "out"))
             links = tree["links"]
             assert isinstance(links, dict)
             links |= {f"n.{socket}": "s.out" for socket in kind.inputs if not kind.inputs[socket].optional}
@@ -92,13 +92,13 @@ def fields(name: str) -> Iterator[tuple[str, str, Tree]]:
                 "links": {"outputs.image": "inputs.b"},
             },
         )
-    yield "group.path", "json", _wrap({"type": "group", "path": f"{name}.json"}, "image")
-    yield "glsl.file", "glsl", _wrap({"type": "glsl", "file": f"{name}.glsl"}, "out")
-    yield "isf.file", "fs", _wrap({"type": "isf", "file": f"{name}.fs"}, "out")
+    yield "group.path", "json", wrap_node({"type": "group", "path": f"{name}.json"}, "image")
+    yield "glsl.file", "glsl", wrap_node({"type": "glsl", "file": f"{name}.glsl"}, "out")
+    yield "isf.file", "fs", wrap_node({"type": "isf", "file": f"{name}.fs"}, "out")
     yield (
         "settings.color.config",
         "ocio",
-        _wrap({"type": "noise"}, "out", settings={"size": [16, 16], "color": {"config": f"{name}.ocio"}}),
+        wrap_node({"type": "noise"}, "out", settings={"size": [16, 16], "color": {"config": f"{name}.ocio"}}),
     )
 
 
@@ -108,7 +108,7 @@ def inner_files(name: str) -> Iterator[tuple[str, dict[str, str], Tree]]:
         '<?xml version="1.0"?><ProcessList id="a" compCLFversion="3">'
         '<Reference path="{}" inBitDepth="32f" outBitDepth="32f"/></ProcessList>'
     )
-    lut = _wrap({"type": "lut_file", "values": {"file": "a.clf"}}, "out")
+    lut = wrap_node({"type": "lut_file", "values": {"file": "a.clf"}}, "out")
     lut["links"] = {"n.image": "s.out", "outputs.image": "n.out"}
     for ending in ("clf", "ctf", "cube"):
         yield f"reference in a CLF to {ending}", {"a.clf": clf.format(f"{name}.{ending}")}, lut
@@ -119,21 +119,21 @@ def inner_files(name: str) -> Iterator[tuple[str, dict[str, str], Tree]]:
         yield f"reference by way of another CLF to {ending}", chained, lut
     scene = {"type": "scene", "values": {"scene": "file", "file": "a.obj"}}
     obj = f"mtllib {name}.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n"
-    yield "material of an OBJ", {"a.obj": obj}, _wrap(scene, "color")
+    yield "material of an OBJ", {"a.obj": obj}, wrap_node(scene, "color")
     textured = {"a.obj": obj.replace(f"{name}.mtl", "a.mtl"), "a.mtl": f"newmtl m\nmap_Kd {name}.png\n"}
-    yield "texture of a material", textured, _wrap(scene, "color")
+    yield "texture of a material", textured, wrap_node(scene, "color")
     gltf = json.loads(images.TEXTS["gltf"])
     gltf["buffers"][0]["uri"] = f"{name}.bin"
     gltf["images"] = [{"uri": f"{name}.png"}]
     scene = {"type": "scene", "values": {"scene": "file", "file": "a.gltf"}}
-    yield "buffer of a glTF", {"a.gltf": json.dumps(gltf)}, _wrap(scene, "color")
+    yield "buffer of a glTF", {"a.gltf": json.dumps(gltf)}, wrap_node(scene, "color")
     for transform in (f"!<FileTransform> {{src: {name}.cube}}", f"!<FileTransform> {{src: {name}.clf}}"):
         config = CONFIG.replace("TRANSFORM", transform)
         settings = {"size": [16, 16], "color": {"config": "a.ocio", "working": "looked"}}
-        yield "table of a config", {"a.ocio": config}, _wrap({"type": "noise"}, "out", settings=settings)
+        yield "table of a config", {"a.ocio": config}, wrap_node({"type": "noise"}, "out", settings=settings)
     for part in CONFIG_PARTS:
         settings = {"size": [16, 16], "color": {"config": "a.ocio"}}
-        tree = _wrap({"type": "noise"}, "out", settings=settings, outputs={"image": {"type": "Image", "view": "v"}})
+        tree = wrap_node({"type": "noise"}, "out", settings=settings, outputs={"image": {"type": "Image", "view": "v"}})
         yield "table of another part of a config", {"a.ocio": part.replace("NAME", name)}, tree
     moved = CONFIG.replace("search_path: .", f"search_path: {name.rpartition('/')[0] or '.'}").replace(
         "TRANSFORM", "!<FileTransform> {src: secret.cube}"
@@ -141,17 +141,17 @@ def inner_files(name: str) -> Iterator[tuple[str, dict[str, str], Tree]]:
     yield (
         "search path of a config",
         {"a.ocio": moved},
-        _wrap(
+        wrap_node(
             {"type": "noise"}, "out", settings={"size": [16, 16], "color": {"config": "a.ocio", "working": "looked"}}
         ),
     )
     yield (
         "include of code",
         {},
-        _wrap({"type": "glsl", "code": [f'#include "{name}.glsl"', "vec4 f(vec4 image) { return image; }"]}, "out"),
+        wrap_node({"type": "glsl", "code": [f'#include "{name}.glsl"', "vec4 f(vec4 image) { return image; }"]}, "out"),
     )
-    group = _wrap({"type": "read_image", "values": {"path": f"{name}.exr"}}, "out")
-    yield "picture of a group", {"g.json": json.dumps(group)}, _wrap({"type": "group", "path": "g.json"}, "image")
+    group = wrap_node({"type": "read_image", "values": {"path": f"{name}.exr"}}, "out")
+    yield "picture of a group", {"g.json": json.dumps(group)}, wrap_node({"type": "group", "path": "g.json"}, "image")
 
 
 CONFIG = """ocio_profile_version: 2
@@ -226,7 +226,7 @@ def make_yard(folder: Path) -> None:
     (secret / "secret.mtl").write_text("newmtl m\nKd 1 0 0\n")
     (secret / "secret.bin").write_bytes(bytes(36))
     (secret / "secret.glsl").write_text("vec4 pixel(vec4 image) { return image; }\n")
-    (secret / "secret.json").write_text(json.dumps(_wrap({"type": "noise"}, "out")))
+    (secret / "secret.json").write_text(json.dumps(wrap_node({"type": "noise"}, "out")))
     (secret / "secret.ocio").write_text(CONFIG.replace("TRANSFORM", "!<CDLTransform> {slope: [2, 2, 2]}"))
     (jail / "link").symlink_to(secret)
     (jail / "LINK").symlink_to(secret)

@@ -21,15 +21,34 @@ import graphs
 import images
 import jails
 import kills
+import oddities
 import soak
 from pool import Tally, run_cases
 
 import shaders
 
-KINDS = ("graphs", "shaders", "images", "jails", "kills", "abuse", "concurrency", "soak")
-QUICK = {"graphs": 400, "shaders": 120, "images": 200, "jails": 150, "kills": 40, "concurrency": 3, "soak": 700}
-FULL = {"graphs": 20000, "shaders": 5000, "images": 2000, "jails": 0, "kills": 500, "concurrency": 40, "soak": 1500}
-"""Cases of a whole campaign, as docs/security.md reports it; 0 jails are all of them."""
+KINDS = ("graphs", "shaders", "images", "jails", "oddities", "kills", "abuse", "concurrency", "soak")
+QUICK = {
+    "graphs": 400,
+    "shaders": 120,
+    "images": 200,
+    "jails": 150,
+    "oddities": 150,
+    "kills": 40,
+    "concurrency": 3,
+    "soak": 700,
+}
+FULL = {
+    "graphs": 20000,
+    "shaders": 5000,
+    "images": 2000,
+    "jails": 0,
+    "oddities": 0,
+    "kills": 500,
+    "concurrency": 40,
+    "soak": 1500,
+}
+"""Cases of a whole campaign, as docs/security.md reports it; 0 jails or oddities are all of them."""
 
 
 def read_options() -> argparse.Namespace:
@@ -60,7 +79,9 @@ def run_kind(kind: str, options: argparse.Namespace) -> Tally:
     if kind == "images":
         cases = images.build_cases(options.seed, count, options.collection)
     else:
-        cases = {"graphs": graphs, "shaders": shaders, "jails": jails}[kind].build_cases(options.seed, count)
+        cases = {"graphs": graphs, "shaders": shaders, "jails": jails, "oddities": oddities}[kind].build_cases(
+            options.seed, count
+        )
     return run_cases(cases, options.jobs, options.keep, options.patience)
 
 
