@@ -8,10 +8,14 @@ the sandbox and refuses special files, since OpenColorIO would wait for a FIFO.
 
 from __future__ import annotations
 
+import re
+import zlib
 from collections.abc import Iterator
 from functools import cache
+from io import BytesIO
 from pathlib import Path
 from typing import Any
+from zipfile import BadZipFile, ZipFile
 
 from ..errors import InputError
 from ..resources.input_files import check_file, fingerprint, open_file, read_bytes
@@ -25,6 +29,17 @@ _PROLOG = 4096
 
 _BLANK = b"\x00\t\n\r \xef\xbb\xbf\xfe\xff"
 """White space and marks of byte order (XML 1.0, section 2.3 and appendix F), with the zeros of UTF-16 and UTF-32."""
+
+_CINESPACE, _METADATA, _METADATA_END = b"CSPLUT", b"BEGIN METADATA", b"END METADATA"
+"""How a Cinespace table begins, and the lines around its metadata (its reader in OpenColorIO 2.6)."""
+
+MAX_NAMES = 2000
+"""Names in a config, and thousands of letters. The largest public one, for ACES 1.0.3, has a fifth of both. Reading
+takes time by the square of their number: 2,000 views half a second, 16,000 more than 25 s (OpenColorIO 2.6)."""
+
+_NAMED = re.compile(r"!<(?:ColorSpace|View|Views|Look|NamedTransform|ViewTransform|Rule)>|^\s*- [^!\s]", re.MULTILINE)
+_ALIASES = re.compile(r"aliases:\s*\[([^\]]*+)")
+"""What has a name in a config: tagged entries, entries of lists that are words, and lists of aliases."""
 
 _NO_TABLE = b"no table"
 """The text that OpenColorIO gets instead of a file that it may not read."""
@@ -42,8 +57,10 @@ def open_config(api: Any, source: str, sandbox: Sandbox) -> tuple[Any, Any]:
     check_file(source, sandbox)
     content = read_bytes(source, sandbox)
     if content.startswith(_ARCHIVE):
+        _check_archive(source, content)
         return api.Config.CreateFromFile(source), None
     text = content.decode(errors="replace")
+    _check_length(source, text)
     config = api.Config.CreateFromStream(text)
     if _NO_TEXT in text and _NO_TEXT in config.serialize():  # which leaves out comments
         raise InputError(f"{source}: has names that are not UTF-8: save it as UTF-8")
@@ -51,6 +68,52 @@ def open_config(api: Any, source: str, sandbox: Sandbox) -> tuple[Any, Any]:
     files = make_sandboxed_files(sandbox)
     config.setConfigIOProxy(files)
     return config, files
+
+
+def _check_length(source: str, text: str) -> None:
+    """Raise InputError for a config with so many names that OpenColorIO, which compares each with all, never ends."""
+    count = len(_NAMED.findall(text)) + sum(aliases.count(",") for aliases in _ALIASES.findall(text))
+    if max(count, len(text) // 1000) > MAX_NAMES:
+        raise InputError(f"{source}: has more than {MAX_NAMES:,} color spaces, views and looks: remove some")
+
+
+def _check_archive(source: str, content: bytes) -> None:
+    """Raise InputError for an archive with a config or a table that OpenColorIO would read for ever."""
+    try:
+        with ZipFile(BytesIO(content)) as archive:
+            for entry in archive.infolist():
+                with archive.open(entry) as file:
+                    head = file.read(_PROLOG)
+                    if entry.filename.endswith(".ocio"):
+                        _check_length(source, (head + file.read(1000 * MAX_NAMES + 1)).decode(errors="replace"))
+                    elif _is_cinespace(head) and (fault := find_table_fault(head + file.read())):
+                        raise InputError(f"{source}: its table {entry.filename} {fault}")
+    except (BadZipFile, NotImplementedError, RuntimeError, EOFError, zlib.error) as error:
+        raise InputError(f"{source}: is no archive that can be read: {error}") from None
+
+
+def check_table(path: str, sandbox: Sandbox) -> None:
+    """Raise InputError for a table that OpenColorIO would read for ever."""
+    with open_file(path, sandbox) as file:
+        is_cinespace = _is_cinespace(file.read(_PROLOG))
+    if is_cinespace and (fault := find_table_fault(read_bytes(path, sandbox))):
+        raise InputError(f"{path}: {fault}")
+
+
+def find_table_fault(content: bytes) -> str:
+    """Why a table must not be given to OpenColorIO, as the rest of a sentence; "" if it may be given.
+
+    OpenColorIO 2.6 waits for the end of the metadata of a Cinespace table, also behind the end of the file.
+    """
+    if not _is_cinespace(content):
+        return ""
+    begin = content.upper().find(_METADATA)
+    ends = (line.removesuffix(b"\r") for line in content[begin:].split(b"\n"))
+    return "has metadata without an end: add the line END METADATA" if begin >= 0 and _METADATA_END not in ends else ""
+
+
+def _is_cinespace(head: bytes) -> bool:
+    return head.lstrip().upper().startswith(_CINESPACE)
 
 
 def find_config_fault(config: Any, sandbox: Sandbox) -> str:
@@ -113,7 +176,10 @@ def _define_sandboxed_files() -> type[Any]:
             """The bytes of a file. It never returns None and raises nothing, since OpenColorIO 2.6 would then open the
             file itself."""
             try:
-                return list(read_bytes(path, self._sandbox) or _NO_TABLE)
+                content = read_bytes(path, self._sandbox)
+                if fault := find_table_fault(content):
+                    raise InputError(f"{path}: {fault}")
+                return list(content or _NO_TABLE)
             except InputError as fault:
                 self.faults.append(str(fault))
                 return list(_NO_TABLE)

@@ -16,7 +16,7 @@ from ..resources.color_program import ColorProgram, LookupTable
 from ..resources.input_files import fingerprint
 from ..resources.library_names import name_for_library
 from ..resources.sandbox import Sandbox
-from .config_files import make_sandboxed_files, may_name_files
+from .config_files import check_table, make_sandboxed_files, may_name_files
 from .display import make_display_processor
 from .management import ColorManager, OcioColorSpace, describe_ocio_error, get_color_manager, load_ocio, ocio_errors
 
@@ -115,6 +115,7 @@ def _make_file_processor(change: LookupFile, sandbox: Sandbox) -> Any:
     api = load_ocio()
     if not Path(change.path).is_file():
         raise InputError(f"{change.path}: there is no such file: choose a table (.cube, .3dl, .clf, ...)")
+    check_table(change.path, sandbox)
     config, files = api.Config.CreateRaw(), None
     if may_name_files(change.path, sandbox):
         files = make_sandboxed_files(sandbox)

@@ -15,6 +15,7 @@ from msgspec import Struct
 
 from ..resources.input_files import check_file
 from ..resources.sandbox import Sandbox
+from .config_files import check_table
 from .management import load_ocio
 from .transforms import Array
 
@@ -114,6 +115,7 @@ def apply_table_file(path: str | Path, colors: Array, sandbox: Sandbox) -> Array
     """The colors [..., 3] behind a table in a file, which OpenColorIO reads and applies on the processor."""
     api = load_ocio()
     api.ClearAllCaches()
+    check_table(str(path), sandbox)
     transform = api.FileTransform(str(check_file(path, sandbox)), interpolation=api.INTERP_TETRAHEDRAL)
     processor = api.Config.CreateRaw().getProcessor(transform).getDefaultCPUProcessor()
     changed = np.ascontiguousarray(colors, np.float32).reshape(-1, 3).copy()

@@ -1,4 +1,4 @@
-"""Files that no mutation makes: bombs, heads that promise gigabytes, endless structures, odd names; each by each command.
+"""Files that no mutation makes: bombs, heads that promise gigabytes, odd names; each by each command.
 
 A row is a name, what lies in the folder, and a graph that reads it. All that fits into a line stands here in full.
 """
@@ -6,7 +6,6 @@ A row is a name, what lies in the folder, and a graph that reads it. All that fi
 from __future__ import annotations
 
 import json
-import os
 import struct
 import zlib
 from collections.abc import Iterator
@@ -87,8 +86,8 @@ MESHES: dict[str, bytes] = {
     "fan.obj": b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf " + b"1 2 3 " * 100_000 + b"\n",
     "count.stl": b"\0" * 80 + struct.pack("<I", 0xFFFFFFFF),
     "count.ply": b"ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nend_header\n",
-    "list.ply": b"ply\nformat binary_little_endian 1.0\nelement face 1\nproperty list uint int vertex_indices\nend_header\n"
-    + struct.pack("<I", 0xFFFFFFFF),
+    "list.ply": b"ply\nformat binary_little_endian 1.0\nelement face 1\n"
+    b"property list uint int vertex_indices\nend_header\n" + struct.pack("<I", 0xFFFFFFFF),
     "loop.gltf": json.dumps(
         GLTF
         | {
