@@ -29,14 +29,14 @@ MAX_MATRIX_TASKS = 256
 _INSTALL = """\
 #!/usr/bin/env bash
 set -euo pipefail
-mkdir -p {folders}
+mkdir -p "$@"
 if [ "$(halation --version 2>/dev/null)" = "halation {version}" ]; then exit 0; fi
 python3 -m venv "{{{{Session.WorkingDirectory}}}}/halation"
 "{{{{Session.WorkingDirectory}}}}/halation/bin/pip" install --quiet "halation=={version}"
 echo "openjd_env: PATH={{{{Session.WorkingDirectory}}}}/halation/bin:$PATH"
 """
-"""Creates the folders of the frames, and installs the version that has written the job, for one session, where another
-one or none is on the machine."""
+"""Creates the folders of the frames, which are its arguments, so that no shell reads them as text. Installs the version
+that has written the job, for one session, where another one or none is installed."""
 
 
 class FarmFile(Struct, frozen=True):
@@ -87,7 +87,7 @@ def write_openjd(job: FarmJob, folder: Path) -> str:
             continue
         name = f"File{len(parameters) + 1}"
         parameters.append(_describe_path(name, word, folder))
-        folders += [f'"{{{{Param.{name}}}}}"'] if word.is_output else []
+        folders += [f"{{{{Param.{name}}}}}"] if word.is_output else []
         arguments.append(f"{_refuse_places(word.before)}{{{{Param.{name}}}}}{_refuse_places(word.after)}")
     arguments += ["--frames={{Task.Param.Frames}}"]
     amounts = [{"name": "amount.worker.gpu", "min": 1}] if job.gpu else []
@@ -101,11 +101,11 @@ def write_openjd(job: FarmJob, folder: Path) -> str:
     }
     if amounts:
         step["hostRequirements"] = {"amounts": amounts}
-    script = _INSTALL.format(version=VERSION, folders=" ".join(folders))
+    script = _INSTALL.format(version=VERSION)
     install = {
         "name": "Halation",
         "script": {
-            "actions": {"onEnter": {"command": "bash", "args": ["{{Env.File.Install}}"]}},
+            "actions": {"onEnter": {"command": "bash", "args": ["{{Env.File.Install}}", *folders]}},
             "embeddedFiles": [{"name": "Install", "type": "TEXT", "filename": "install.sh", "data": script}],
         },
     }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import json
+import re
 import zlib
 from base64 import b64encode
 
@@ -59,10 +60,8 @@ def make_page(package: Package, order: ExportOrder) -> str:
         "PACKAGE": json.dumps(packed, separators=(",", ":")),
         "SCRIPT": f"{reader}\n{read_shipped_text('page.js')}",
     }
-    text = read_shipped_text("page.html")
-    for name, part in filled.items():
-        text = text.replace(f"/*{name}*/", part)
-    return text
+    # In one pass: a description may hold such marks itself.
+    return re.sub(r"/\*([A-Z]+)\*/", lambda mark: filled[mark[1]], read_shipped_text("page.html"))
 
 
 def _find_strides(package: Package) -> list[int]:

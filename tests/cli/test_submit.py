@@ -62,6 +62,18 @@ def test_open_job_description_is_valid_and_runs(cli, shot_folder):
 
 
 @POSIX
+def test_no_shell_runs_the_names_of_folders(cli, shot_folder):
+    folder = "o'\"$(touch pwned)`touch pwned`; touch pwned\nx"
+    assert submit(cli, "-o", f"{folder}/f.####.exr", "--openjd", "job.yaml", "--slurm", "job.sh").code == 0
+    ran = run(str(BIN / "openjd"), "run", "job.yaml", "--step", "Render")
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    frames = sorted((shot_folder / folder).iterdir())
+    assert run("bash", "job.sh", SLURM_ARRAY_TASK_ID="0").returncode == 0
+    assert len(frames) == 4 and sorted((shot_folder / folder).iterdir()) == frames
+    assert not [*shot_folder.rglob("pwned")]
+
+
+@POSIX
 def test_a_farm_maps_paths_and_asks_for_machines(cli, shot_folder):
     (shot_folder / "farm").mkdir()
     words = ("-o", "elsewhere/f.####.exr", "--openjd", "farm/job.yaml", "--gpu", "--memory", "2G")
