@@ -8,11 +8,11 @@ from itertools import groupby
 from typing import Any
 from unicodedata import bidirectional, category
 
-import uharfbuzz as hb
 from halation.nodes import TextDirection
 from msgspec import Struct
 
 from .bidi_brackets import resolve_brackets
+from .harfbuzz import hb
 
 _STRONG = {"L": 0, "R": 1, "AL": 1}
 _MARKED = frozenset({"R", "AL", "AN", "RLE", "RLO", "LRO", "LRE", "RLI", "LRI", "FSI"})

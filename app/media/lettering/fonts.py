@@ -8,7 +8,6 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-import uharfbuzz as hb
 from halation.nodes import Typeface
 from msgspec import Struct
 
@@ -16,6 +15,7 @@ from ...errors import InputError
 from ...resources.input_files import check_file, find_similar_name, fingerprint, read_bytes
 from ...resources.sandbox import Sandbox
 from . import FONT_ENDINGS
+from .harfbuzz import hb
 
 FONTS = Path(__file__).parent / "fonts"
 PACKED = {"dejavu sans": ("DejaVuSans.ttf", "DejaVuSans-Bold.ttf"), "dejavu sans mono": ("DejaVuSansMono.ttf",)}

@@ -6,12 +6,12 @@ from functools import lru_cache
 from typing import Any
 from unicodedata import category
 
-import uharfbuzz as hb
 from halation.nodes import Contour, Curve4
 from msgspec import Struct
 
 from .bidi_runs import TextRun
 from .fonts import LoadedFont
+from .harfbuzz import hb
 
 _IGNORED = frozenset({"Cc", "Cf", "Zl", "Zp"})
 """Categories of characters that have no picture, so that no glyph of them is missing."""
