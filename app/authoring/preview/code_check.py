@@ -40,13 +40,13 @@ class CodeCheck:
         """
         return any(
             path not in work.faults and self._errors.get(type(node), node) is not None
-            for path, node in _list_code_nodes(work.wish.graph, "")
+            for path, node in _list_code_nodes(work.request.graph, "")
         )
 
     def add_faults(self, work: PreviewWork) -> bool:
         """Do a step, and add the errors that rendering did not find; True if there are new ones."""
         faults = dict[str, HalationError]()
-        nodes = {path: node for path, node in _list_code_nodes(work.wish.graph, "") if path not in work.faults}
+        nodes = {path: node for path, node in _list_code_nodes(work.request.graph, "") if path not in work.faults}
         untried = {type(node): node for node in nodes.values() if type(node) not in self._errors}
         if self._checked not in untried:
             self.clear()

@@ -82,23 +82,23 @@ class DisplayedImages:
         picture = self._parts.get(name)
         return picture and picture.image
 
-    def show(self, name: str, port: Port, wish: PreviewRequest, face: FrameImage) -> None:
+    def show(self, name: str, port: Port, request: PreviewRequest, face: FrameImage) -> None:
         """Set the picture of a panel."""
         surface, before = face.surface, self._pictures.get(name)
-        self._pictures[name] = self._lease_image(before, port, wish, face, surface.size)
+        self._pictures[name] = self._lease_image(before, port, request, face, surface.size)
         _drop(before)
         _drop(self._parts.pop(name, None))
 
-    def show_part(self, wish: PreviewRequest, ports: Mapping[str, Port], plan: Plan, part: PictureRegion) -> None:
+    def show_part(self, request: PreviewRequest, ports: Mapping[str, Port], plan: Plan, part: PictureRegion) -> None:
         """Show a part of new pictures until the whole is ready."""
         for name, port in ports.items():
             before = self._parts.get(name)
-            face = self.describe(name, port, wish, plan, part.size)
-            self._parts[name] = self._lease_image(before, port, wish, face, part.size)
+            face = self.describe(name, port, request, plan, part.size)
+            self._parts[name] = self._lease_image(before, port, request, face, part.size)
             _drop(before)
 
     def _lease_image(
-        self, before: _LeasedImage | None, port: Port, wish: PreviewRequest, face: FrameImage, size: Size
+        self, before: _LeasedImage | None, port: Port, request: PreviewRequest, face: FrameImage, size: Size
     ) -> _LeasedImage:
         """The picture of a panel, with a lease so that its texture is not used again.
 
@@ -118,35 +118,35 @@ class DisplayedImages:
                 texture.handle,
                 size,
                 face.full_size,
-                wish.scale,
-                pixel_kind(wish.graph, port, surface.channels),
+                request.scale,
+                pixel_kind(request.graph, port, surface.channels),
                 surface.channels,
                 surface.key,
                 before.image.revision if before is not None and same else self._revision,
-                wish.frame,
+                request.frame,
                 surface.window.start if surface.window else (0, 0),
                 face.default_view,
             ),
             lease,
         )
 
-    def describe(self, name: str, port: Port, wish: PreviewRequest, plan: Plan, size: Size) -> FrameImage:
+    def describe(self, name: str, port: Port, request: PreviewRequest, plan: Plan, size: Size) -> FrameImage:
         """What a panel is to show of a plan; `size` is that of the whole picture."""
         number, view = plan.outputs[name], ""
         with suppress(InputError):  # a file that is gone by now: the next plan says so
             view = choose_default_view(plan, number, self._encodings)
-        return FrameImage(plan.surfaces[number], self._find_full_size(port, wish, plan, size), view)
+        return FrameImage(plan.surfaces[number], self._find_full_size(port, request, plan, size), view)
 
-    def _find_full_size(self, port: Port, wish: PreviewRequest, plan: Plan, size: Size) -> Size:
+    def _find_full_size(self, port: Port, request: PreviewRequest, plan: Plan, size: Size) -> Size:
         """The size at scale 1 of what was rounded at this one: as before, or that of a picture or the canvas."""
-        candidates = [self._full_sizes.get(port), wish.size, wish.graph.settings.size]
+        candidates = [self._full_sizes.get(port), request.size, request.graph.settings.size]
         candidates += [plan.surfaces[upload.surface].size for upload in plan.uploads]
-        full_size = (round(size[0] / wish.scale), round(size[1] / wish.scale))
+        full_size = (round(size[0] / request.scale), round(size[1] / request.scale))
         for full in candidates:
-            if full and scale_size(full, wish.scale) == size:
+            if full and scale_size(full, request.scale) == size:
                 full_size = full
                 break
-        full_size = size if wish.scale == 1.0 or size == (1, 1) else full_size
+        full_size = size if request.scale == 1.0 or size == (1, 1) else full_size
         self._full_sizes[port] = full_size
         return full_size
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class PictureJob:
-    """A frame of a wish, for some of its ports. Raises the errors of `app.errors`, from the first line on.
+    """A frame of a request, for some of its ports. Raises the errors of `app.errors`, from the first line on.
 
     `ahead` is for a frame that nobody wants to see yet. With a `part`, no more is computed of the pictures.
     """
@@ -26,14 +26,14 @@ class PictureJob:
     def __init__(
         self,
         renderer: Renderer,
-        wish: PreviewRequest,
+        request: PreviewRequest,
         ports: Mapping[str, Port],
         frame: int,
         timed: bool,
         ahead: bool = False,
         part: PictureRegion | None = None,
     ) -> None:
-        self.wish, self.ports, self.frame, self.ahead, self.part = wish, ports, frame, ahead, part
+        self.request, self.ports, self.frame, self.ahead, self.part = request, ports, frame, ahead, part
         self.timings: list[tuple[Pass, float]] | None = [] if timed else None
         self.plan: Plan | None = None
         self.run: Run | None = None
@@ -48,13 +48,13 @@ class PictureJob:
         self._runs: Iterator[Run] | None = None
         self._frame_renderer: FrameRenderer | None = None
         try:
-            self._frame_renderer = wish.frame_cache.find_frame_renderer(ports)
+            self._frame_renderer = request.frame_cache.find_frame_renderer(ports)
             if self._frame_renderer is None:
                 region = part.region if part else None
-                plan = _check_displayable(renderer.compile(wish.graph, wish.render_request(ports, frame, region)))
+                plan = _check_displayable(renderer.compile(request.graph, request.render_request(ports, frame, region)))
                 if plan.memories:
-                    self._frame_renderer = wish.frame_cache.add_frame_renderer(
-                        ports, FrameRenderer(renderer, wish.graph, wish.render_request(ports, frame))
+                    self._frame_renderer = request.frame_cache.add_frame_renderer(
+                        ports, FrameRenderer(renderer, request.graph, request.render_request(ports, frame))
                     )
                 else:
                     self.plan, self.run = plan, renderer.runner.start_run(plan, self.lease, timings=self.timings)
@@ -75,6 +75,10 @@ class PictureJob:
             return "plan", planned, total
         finished, total = self.preroll
         return ("pre-roll", finished, total) if total and finished < total else None
+
+    def is_ahead_of(self, request: PreviewRequest) -> bool:
+        """True if it began to compute the frame of a request before the request came."""
+        return self.ahead and self.frame == request.frame and self.request.frame_cache is request.frame_cache
 
     def step(self) -> bool:
         """Do one step; True when the job is done."""
@@ -112,12 +116,12 @@ class PictureJob:
         return True
 
 
-def begin_visible_part(renderer: Renderer, wish: PreviewRequest, glimpse: VisibleRegion) -> PictureJob | None:
+def begin_visible_part(renderer: Renderer, request: PreviewRequest, glimpse: VisibleRegion) -> PictureJob | None:
     """A job for the visible part of a request; None if it would not be faster than the whole."""
-    ports = {name: wish.ports[name] for name in sorted(glimpse.names)}
+    ports = {name: request.ports[name] for name in sorted(glimpse.names)}
     try:
-        part = find_visible_part(renderer, wish, ports, glimpse)
-        return PictureJob(renderer, wish, ports, wish.frame, False, part=part) if part else None
+        part = find_visible_part(renderer, request, ports, glimpse)
+        return PictureJob(renderer, request, ports, request.frame, False, part=part) if part else None
     except HalationError:  # the job for the whole picture finds and reports it
         return None
 

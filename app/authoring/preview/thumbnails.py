@@ -52,13 +52,13 @@ class _Thumbnail:
     mark: object
 
 
-def list_thumbnail_sources(wish: PreviewRequest, plan: Plan) -> dict[str, ThumbnailSource]:
+def list_thumbnail_sources(request: PreviewRequest, plan: Plan) -> dict[str, ThumbnailSource]:
     """The thumbnail sources of a plan that has run, by path: the first output of each node."""
     sources: dict[str, ThumbnailSource] = {}
     for port, number in plan.results.items():
         path, surface = canvas_path(port), plan.surfaces[number]
-        kind = pixel_kind(wish.graph, port, surface.channels)
-        sources.setdefault(path, ThumbnailSource(path, surface.key, kind, surface.channels, wish.node_mark(path)))
+        kind = pixel_kind(request.graph, port, surface.channels)
+        sources.setdefault(path, ThumbnailSource(path, surface.key, kind, surface.channels, request.node_mark(path)))
     return sources
 
 

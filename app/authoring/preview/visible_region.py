@@ -71,17 +71,20 @@ class PictureRegion:
 
 
 def find_visible_part(
-    renderer: Renderer, wish: PreviewRequest, ports: Mapping[str, Port], glimpse: VisibleRegion
+    renderer: Renderer, request: PreviewRequest, ports: Mapping[str, Port], glimpse: VisibleRegion
 ) -> PictureRegion | None:
     """The region of these ports to compute first; None if all must be computed, or all is there.
 
     Frames that need the ones before are made as a whole, since these are. Raises the errors of `app.errors`.
     """
-    if wish.frame_cache.needs_history:
+    if request.frame_cache.needs_history:
         return None
-    plan, textures = renderer.compile(wish.graph, wish.render_request(ports, wish.frame)), renderer.runner.textures
+    plan, textures = (
+        renderer.compile(request.graph, request.render_request(ports, request.frame)),
+        renderer.runner.textures,
+    )
     surfaces = [plan.surfaces[number] for number in plan.outputs.values()]
-    size = scale_size(glimpse.picture, wish.scale)
+    size = scale_size(glimpse.picture, request.scale)
     if plan.memories or plan.tiling is not None or any(surface.size != size for surface in surfaces):
         return None
     region = None if all(surface.key in textures for surface in surfaces) else glimpse.region(size)

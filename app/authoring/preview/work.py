@@ -21,7 +21,7 @@ REST = 0.2
 class PreviewWork:
     """The queue of pictures that are still to be compiled, and the errors so far."""
 
-    wish: PreviewRequest
+    request: PreviewRequest
     queue: list[Mapping[str, Port]]
     started_at: float
     passes: int = 0
@@ -38,11 +38,16 @@ class PreviewWork:
     tried_region: VisibleRegion | None = None
     """The visible region for which a part was tried last."""
 
+    @property
+    def is_finished(self) -> bool:
+        """True if all its pictures are computed, and none is broken."""
+        return bool(self.request.ports) and not self.queue and not self.broken
+
     def may_show_part_first(self, glimpse: VisibleRegion | None) -> bool:
         """True if a part of its pictures may be computed first."""
-        if glimpse is None or glimpse == self.tried_region or self.faults or self.pending or not self.wish.ports:
+        if glimpse is None or glimpse == self.tried_region or self.faults or self.pending or not self.request.ports:
             return False
-        return glimpse.names <= self.wish.ports.keys() and not (self.part and self.part.shows(glimpse))
+        return glimpse.names <= self.request.ports.keys() and not (self.part and self.part.shows(glimpse))
 
     def count_passes(self, job: PictureJob | None) -> tuple[int, int]:
         """Passes done, and passes to do in all, as far as they are known while `job` runs."""
@@ -51,9 +56,9 @@ class PreviewWork:
         finished = self.passes + job.finished_passes
         return finished + job.run.passes_done, finished + job.run.total
 
-    def is_replaced(self, wish: PreviewRequest, job: PictureJob) -> bool:
+    def is_replaced(self, request: PreviewRequest, job: PictureJob) -> bool:
         """True if another request would not show the pictures of `job`."""
-        differs = self.wish.ports != wish.ports or self.wish.scale != wish.scale
+        differs = self.request.ports != request.ports or self.request.scale != request.scale
         return differs or job.ahead or bool(self.part and not job.part)
 
     def must_wait(self, clock_time: float) -> bool:

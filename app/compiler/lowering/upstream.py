@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from hashlib import blake2b
-
 from halation.nodes import Node
 from msgspec.structs import replace
 
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Port, is_animated
+from ..ir.identity import hash_parts
 from .expand import FlatGraph, find_changed_nodes
 from .graph_at_frames import GraphAtFrames
 
@@ -85,7 +84,9 @@ class UpstreamHashes:
         node = self._flat.nodes[path]
         read = [f"{source} {self._hash_source(source)}" if source else "-" for source in self._reads[path]]
         units = node.length_units, self._flat.find_reference_height(path)
-        self.hashes[path] = _hash(node.shader, node.settings, units, path in self._flat.muted, self._settings, *read)
+        self.hashes[path] = hash_parts(
+            node.shader, node.settings, units, path in self._flat.muted, self._settings, *read
+        )
 
     def _hash_ends(self) -> None:
         groups: dict[str, str] = {}
@@ -94,13 +95,13 @@ class UpstreamHashes:
             if side == INPUTS:
                 self.hashes[f"{end}"] = self._hash_source(self._flat.follow(end))
             else:
-                groups[group] = _hash(groups.get(group, ""), end.socket, self._hash_source(self._flat.follow(end)))
+                groups[group] = hash_parts(groups.get(group, ""), end.socket, self._hash_source(self._flat.follow(end)))
         self.hashes |= groups
 
     def _hash_source(self, source: Port) -> str:
         """The hash of the port that a link starts at."""
         if source in self._flat.inputs:
-            return _hash(f"{source}", self._flat.inputs[source], self._settings)
+            return hash_parts(f"{source}", self._flat.inputs[source], self._settings)
         return self.hashes.get(source.node, "")
 
 
@@ -111,7 +112,3 @@ def _collect_animations(graph: Graph) -> list[object]:
         sorted(graph.animation.items(), key=lambda item: item[0]),
         *(animation for animation in inner if any(animation)),
     ]
-
-
-def _hash(*parts: object) -> str:
-    return blake2b("\0".join(str(part) for part in parts).encode(), digest_size=16).hexdigest()

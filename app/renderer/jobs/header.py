@@ -6,11 +6,11 @@ Nothing in it depends on the time or place of rendering: the same graph and the 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from hashlib import blake2b
 from typing import Any
 
 from ... import document, media
 from ...compiler import Pass, Plan, Target
+from ...compiler.ir.identity import hash_parts
 from ...errors import HalationError
 from ...graph import Graph
 from ...graph.paths import inline_files
@@ -108,14 +108,14 @@ def compute_frame_key(
     history = ""
     if plan.memories:
         history_files = [(item.owner, hashes.hash_files(item.files.values())) for item in sources if item.files]
-        history = _hash_parts(graph, history_files, request.scale, request.size, plan.target.form)
+        history = hash_parts(graph, history_files, request.scale, request.size, plan.target.form)
     keys = _compute_content_keys(plan, contents, history)
     pixels = {layer: keys[plan.outputs[name]] for layer, name in file.layers.items()}
     view_settings = (file.view, settings.display, settings.look, settings.space, file.encoding.manager.digest)
     encoding_settings = (file.path.suffix, *view_settings, settings.compression, settings.precision)
     if file.encoding.dither != "none":
         encoding_settings = (*encoding_settings, file.encoding.dither, request.frame)
-    return _hash_parts(VERSION, sorted(pixels.items()), sorted(file.kinds.items()), encoding_settings)
+    return hash_parts(VERSION, sorted(pixels.items()), sorted(file.kinds.items()), encoding_settings)
 
 
 def has_key(file: Destination, sandbox: Sandbox) -> bool:
@@ -144,7 +144,7 @@ def _compute_content_keys(plan: Plan, contents: Mapping[str, str], history: str)
     for item in plan.uploads:
         picture, surface = item.picture, plan.surfaces[item.surface]
         content = surface.key if picture.in_memory else contents[picture.path]
-        keys[item.surface] = _hash_parts(
+        keys[item.surface] = hash_parts(
             content,
             picture.frame,
             picture.layer,
@@ -155,7 +155,7 @@ def _compute_content_keys(plan: Plan, contents: Mapping[str, str], history: str)
             surface.size,
         )
     for render_pass in plan.passes:
-        pass_key = _hash_parts(
+        pass_key = hash_parts(
             *_describe_pass(render_pass), [keys.get(number, history) for number in render_pass.textures]
         )
         for place, number in enumerate(render_pass.targets):
@@ -167,7 +167,3 @@ def _compute_content_keys(plan: Plan, contents: Mapping[str, str], history: str)
 def _describe_pass(render_pass: Pass) -> tuple[object, ...]:
     mesh = render_pass.mesh.digest if render_pass.mesh is not None else ""
     return render_pass.shader.source, render_pass.shader.vertex, render_pass.uniforms, render_pass.weights, mesh
-
-
-def _hash_parts(*parts: object) -> str:
-    return blake2b("\0".join(map(str, parts)).encode(), digest_size=16).hexdigest()
