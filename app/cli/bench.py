@@ -39,6 +39,22 @@ _BAR = 24
 """Columns of a bar. Chosen by judgement: a line fits into 120 columns."""
 
 
+_Frames = Annotated[str | None, typer.Option(metavar="1-24x8", help="Measure the sum over these frames.")]
+_Repeats = Annotated[int, typer.Option("-n", "--repeats", min=1, max=10_000, help="Number of measured runs.")]
+_WarmUp = Annotated[
+    int, typer.Option("--warm-up", min=0, max=10_000, help="Number of runs before those that are measured.")
+]
+_Passes = Annotated[bool, typer.Option("--passes", help="Print a line per pass instead of per node.")]
+_Compare = Annotated[Path | None, typer.Option(metavar="FILE", help="Compare with an earlier output of bench --json.")]
+_FailOver = Annotated[
+    str | None,
+    typer.Option(
+        metavar="1.2",
+        help="Exit with 1 if a pass or the whole takes more than this many times as long as in --compare.",
+    ),
+]
+
+
 def bench(
     context: typer.Context,
     graph: GraphFile,
@@ -48,22 +64,12 @@ def bench(
     size: SizeText = None,
     scale: Scale = 1.0,
     frame: OneFrame = None,
-    frames: Annotated[str | None, typer.Option(metavar="1-24x8", help="Measure the sum over these frames.")] = None,
-    repeats: Annotated[int, typer.Option("-n", "--repeats", min=1, max=10_000, help="Number of measured runs.")] = 15,
-    warm_up: Annotated[
-        int, typer.Option("--warm-up", min=0, max=10_000, help="Number of runs before those that are measured.")
-    ] = 3,
-    passes: Annotated[bool, typer.Option("--passes", help="Print a line per pass instead of per node.")] = False,
-    compare: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Compare with an earlier output of bench --json.")
-    ] = None,
-    fail_over: Annotated[
-        str | None,
-        typer.Option(
-            metavar="1.2",
-            help="Exit with 1 if a pass or the whole takes more than this many times as long as in --compare.",
-        ),
-    ] = None,
+    frames: _Frames = None,
+    repeats: _Repeats = 15,
+    warm_up: _WarmUp = 3,
+    passes: _Passes = False,
+    compare: _Compare = None,
+    fail_over: _FailOver = None,
     precision: PassPrecision = None,
     form: Form = None,
     timeout: Timeout = DEFAULT_TIMEOUT,

@@ -22,21 +22,27 @@ TROUBLE = 2
 _VERSION = "The old graph: a JSON file, REV:FILE in git, or - for standard input."
 
 
+_A = Annotated[str, typer.Argument(metavar="A", help=_VERSION)]
+_B = Annotated[str, typer.Argument(metavar="B", help="The new graph, named in the same ways.")]
+_Layout = Annotated[bool, typer.Option("--layout", help="Also list what moved on the canvas.")]
+_Render = Annotated[bool, typer.Option("--render", help="Also render both graphs and compare the pictures.")]
+_Output = Annotated[
+    Path | None,
+    typer.Option("-o", "--output", metavar="FILE.png", help="Write the pictures side by side, with their differences."),
+]
+_Frame = Annotated[int | None, typer.Option(help="Render this frame; by default the first frame of A.")]
+
+
 def diff(
-    a: Annotated[str, typer.Argument(metavar="A", help=_VERSION)],
-    b: Annotated[str, typer.Argument(metavar="B", help="The new graph, named in the same ways.")],
-    layout: Annotated[bool, typer.Option("--layout", help="Also list what moved on the canvas.")] = False,
-    render: Annotated[bool, typer.Option("--render", help="Also render both graphs and compare the pictures.")] = False,
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o", "--output", metavar="FILE.png", help="Write the pictures side by side, with their differences."
-        ),
-    ] = None,
+    a: _A,
+    b: _B,
+    layout: _Layout = False,
+    render: _Render = False,
+    output: _Output = None,
     inputs: Inputs = None,
     size: SizeText = None,
     scale: Scale = 1.0,
-    frame: Annotated[int | None, typer.Option(help="Render this frame; by default the first frame of A.")] = None,
+    frame: _Frame = None,
     as_json: AsJson = False,
     *,
     sandbox: Sandbox,
@@ -49,14 +55,9 @@ def diff(
     from ..document.diff_merge import compare_graphs, describe_difference
     from ..errors import RenderError, UsageError
 
-    if a == b == "-":
-        raise UsageError("- can be used only once: name a file as A or B")
     if not render and (output or inputs or size or frame is not None or scale != 1.0):
         raise UsageError("-o, -i, --size, --scale and --frame need --render")
-    if output and output.suffix.lower() != ".png":
-        raise UsageError(f"-o {output}: pictures side by side are written as .png")
-    if render and "-" in (a, b):
-        raise UsageError("--render reads both graphs twice: name files instead of -")
+    _check_files(a, b, output, render)
     before, after = load_version(a, sandbox=sandbox), load_version(b, sandbox=sandbox)
     changes = compare_graphs(before, after, layout=layout)
     lines = describe_difference(changes, before, after)
@@ -79,6 +80,18 @@ def diff(
     if as_json:
         print_json(report)
     return 0 if report["same"] else 1
+
+
+def _check_files(a: str, b: str, output: Path | None, render: bool) -> None:
+    """Raise UsageError for files that cannot be compared or written."""
+    from ..errors import UsageError
+
+    if a == b == "-":
+        raise UsageError("- can be used only once: name a file as A or B")
+    if output and output.suffix.lower() != ".png":
+        raise UsageError(f"-o {output}: pictures side by side are written as .png")
+    if render and "-" in (a, b):
+        raise UsageError("--render reads both graphs twice: name files instead of -")
 
 
 def difference_facts(changes: GraphDifference, lines: tuple[DifferenceLine, ...]) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -26,9 +26,19 @@ from .options import (
 from .outcome import print_json
 
 if TYPE_CHECKING:
-    from ..compiler import Form, Plan, Target
+    from ..compiler import Form, Plan, ResolvedLength, Target
     from ..graph import Graph, Output
     from ..inputs.lazy_provider import LazyResourceProvider
+
+
+_Form = Annotated[
+    str,
+    typer.Option(
+        metavar="fragment|compute|device",
+        help="Plan passes as fragment or as compute shaders, or as the device of this machine needs them.",
+    ),
+]
+_Dot = Annotated[bool, typer.Option("--dot", help="Print the passes as a Graphviz graph.")]
 
 
 def explain(
@@ -39,16 +49,10 @@ def explain(
     size: SizeText = None,
     scale: Scale = 1.0,
     frame: OneFrame = None,
-    form: Annotated[
-        str,
-        typer.Option(
-            metavar="fragment|compute|device",
-            help="Plan passes as fragment or as compute shaders, or as the device of this machine needs them.",
-        ),
-    ] = "compute",
+    form: _Form = "compute",
     precision: PassPrecision = None,
     memory: Memory = None,
-    dot: Annotated[bool, typer.Option("--dot", help="Print the passes as a Graphviz graph.")] = False,
+    dot: _Dot = False,
     as_json: AsJson = False,
     *,
     sandbox: Sandbox,
@@ -86,18 +90,17 @@ def explain(
     plan = compiler.compile_graph(opened_graph, request, provider, target=target, precision=parsed_precision)
     lengths = () if dot else compiler.resolve_lengths(opened_graph, request, provider)
     if as_json:
-        listed = [
-            {"value": str(item.port), "number": item.number, "unit": item.unit, "pixels": item.pixels}
-            for item in lengths
-        ]
-        print_json({**compiler.plan_as_json(plan), "lengths": listed})
+        print_json({**compiler.plan_as_json(plan), "lengths": [_length_facts(item) for item in lengths]})
     elif dot:
         print(compiler.write_dot(plan))
     else:
-        print(compiler.explain(plan, _describe_views(opened_graph, plan, provider)))
-        for item in lengths:
-            print(f"length    {item}")
+        views = _describe_views(opened_graph, plan, provider)
+        print(compiler.explain(plan, views), *(f"length    {item}" for item in lengths), sep="\n")
     return 0
+
+
+def _length_facts(length: ResolvedLength) -> dict[str, Any]:
+    return {"value": str(length.port), "number": length.number, "unit": length.unit, "pixels": length.pixels}
 
 
 def _describe_views(graph: Graph, plan: Plan, provider: LazyResourceProvider) -> dict[str, str]:

@@ -34,38 +34,42 @@ Selection = Annotated[
 ]
 
 
+_Kind = Annotated[
+    str,
+    typer.Option(
+        "--to",
+        metavar="KIND",
+        help="isf, web, glsl, cube, clf or png; by default what the ending of the file says.",
+    ),
+]
+_Output = Annotated[Path | None, typer.Option("-o", "--output", metavar="FILE", help="The file or folder to write.")]
+_Encoding = Annotated[
+    str,
+    typer.Option(metavar="linear|srgb", help="For a table: whether its numbers are linear light or display codes."),
+]
+_ColorRange = Annotated[
+    str, typer.Option("--range", metavar="LOW,HIGH", help="For a table: the range of light that it covers.")
+]
+_LutSize = Annotated[
+    int, typer.Option("--lut-size", metavar="N", help="For a table: the number of colors along each side.")
+]
+_Check = Annotated[bool, typer.Option("--check", help="For a table: print its largest and mean error over a picture.")]
+
+
 def export(
     graph: GraphFile,
-    kind: Annotated[
-        str,
-        typer.Option(
-            "--to",
-            metavar="KIND",
-            help="isf, web, glsl, cube, clf or png; by default what the ending of the file says.",
-        ),
-    ] = "",
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="FILE", help="The file or folder to write.")
-    ] = None,
+    kind: _Kind = "",
+    output: _Output = None,
     inputs: Inputs = None,
     sets: Sets = None,
     node: Node = "",
     selection: Selection = "",
     size: SizeText = None,
     frame: OneFrame = None,
-    encoding: Annotated[
-        str,
-        typer.Option(metavar="linear|srgb", help="For a table: whether its numbers are linear light or display codes."),
-    ] = "",
-    color_range: Annotated[
-        str, typer.Option("--range", metavar="LOW,HIGH", help="For a table: the range of light that it covers.")
-    ] = "",
-    lut_size: Annotated[
-        int, typer.Option("--lut-size", metavar="N", help="For a table: the number of colors along each side.")
-    ] = 33,
-    check: Annotated[
-        bool, typer.Option("--check", help="For a table: print its largest and mean error over a picture.")
-    ] = False,
+    encoding: _Encoding = "",
+    color_range: _ColorRange = "",
+    lut_size: _LutSize = 33,
+    check: _Check = False,
     as_json: AsJson = False,
     *,
     sandbox: Sandbox,

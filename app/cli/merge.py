@@ -22,26 +22,31 @@ TROUBLE = 2
 """The exit code of errors that have 1 elsewhere, because 1 means here that there are conflicts."""
 
 
+_Graphs = Annotated[
+    list[str],
+    typer.Argument(
+        metavar="BASE OURS THEIRS",
+        help="Three versions of a graph: files, REV:FILE in git, or - for standard input.",
+    ),
+]
+_Output = Annotated[
+    Path | None,
+    typer.Option("-o", "--output", metavar="FILE", help="The file to write; by default standard output."),
+]
+_Resolve = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--resolve",
+        metavar="[PATH=]SIDE",
+        help="Resolve the conflicts in the named graphs: take ours, theirs or base, for all or only at PATH.",
+    ),
+]
+
+
 def merge(
-    graphs: Annotated[
-        list[str],
-        typer.Argument(
-            metavar="BASE OURS THEIRS",
-            help="Three versions of a graph: files, REV:FILE in git, or - for standard input.",
-        ),
-    ],
-    output: Annotated[
-        Path | None,
-        typer.Option("-o", "--output", metavar="FILE", help="The file to write; by default standard output."),
-    ] = None,
-    resolve: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--resolve",
-            metavar="[PATH=]SIDE",
-            help="Resolve the conflicts in the named graphs: take ours, theirs or base, for all or only at PATH.",
-        ),
-    ] = None,
+    graphs: _Graphs,
+    output: _Output = None,
+    resolve: _Resolve = None,
     as_json: AsJson = False,
     *,
     sandbox: Sandbox,

@@ -26,21 +26,24 @@ if TYPE_CHECKING:
     from halation.nodes import Node, Value
 
 
+_Id = Annotated[
+    str, typer.Argument(help="A node, or a code file (FILE.fs, FILE.glsl); without it all nodes are listed.")
+]
+_Check = Annotated[
+    bool,
+    typer.Option(
+        "--check",
+        help="Check a node, or all nodes of a plug-in (by its package or import name), or of all plug-ins: "
+        "tooltip, units, ranges, shader, pixels. Exits with 1 if something is wrong.",
+    ),
+]
+_Markdown = Annotated[bool, typer.Option("--markdown", help="Print the whole catalogue as one Markdown page.")]
+
+
 def nodes(
-    id: Annotated[
-        str, typer.Argument(help="A node, or a code file (FILE.fs, FILE.glsl); without it all nodes are listed.")
-    ] = "",
-    check: Annotated[
-        bool,
-        typer.Option(
-            "--check",
-            help="Check a node, or all nodes of a plug-in (by its package or import name), or of all plug-ins: "
-            "tooltip, units, ranges, shader, pixels. Exits with 1 if something is wrong.",
-        ),
-    ] = False,
-    markdown: Annotated[
-        bool, typer.Option("--markdown", help="Print the whole catalogue as one Markdown page.")
-    ] = False,
+    id: _Id = "",
+    check: _Check = False,
+    markdown: _Markdown = False,
     as_json: AsJson = False,
     *,
     sandbox: Sandbox,

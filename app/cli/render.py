@@ -36,20 +36,73 @@ if TYPE_CHECKING:
     from ..renderer.jobs.render_entry import RenderEntry
 
 
+_Output = Annotated[
+    list[str] | None,
+    Outputs,
+]
+_Each = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--each",
+        metavar="FILE|PATTERN|@LIST|-",
+        help="Render once for each of these files, which {} and {stem} in -i, --set and -o stand for.",
+    ),
+]
+_Resume = Annotated[bool, typer.Option("--resume", help="Skip frames whose files exist and are up to date.")]
+_Jobs = Annotated[
+    int,
+    typer.Option(
+        "-j", "--jobs", min=1, help="Share the frames among this many processes, if each frame is independent."
+    ),
+]
+_Priority = Annotated[
+    int, typer.Option("--priority", help="Frames of jobs with a higher number go first on a cluster.")
+]
+_Detach = Annotated[
+    bool,
+    typer.Option("--detach", help="Leave the job to the cluster; halation jobs lists, follows and cancels it."),
+]
+_Display = Annotated[str, typer.Option(help="OpenColorIO display of these files; by default that of the config.")]
+_Look = Annotated[
+    str, typer.Option(help="OpenColorIO look of these files, instead of the looks of the view; 'none' for no look.")
+]
+_Colorspace = Annotated[
+    str, typer.Option(metavar="NAME", help="Write colors in this color space, such as ACEScg, in any format.")
+]
+_Compression = Annotated[str, typer.Option(help="EXR compression: none, rle, zips, zip, piz, pxr24, dwaa, ...")]
+_Codec = Annotated[
+    str,
+    typer.Option(
+        help="Codec of videos: h264, h265, prores, prores4444, ffv1, qtrle or vp9; the default depends on the file."
+    ),
+]
+_Dither = Annotated[
+    str,
+    typer.Option(
+        metavar="blue|none",
+        help="Round colors to 8 and 10 bits with blue noise, which prevents bands, or to the nearest code.",
+    ),
+]
+_BurnIn = Annotated[
+    bool, typer.Option("--burn-in", help="Write the file, timecode and frame over the pictures, for dailies.")
+]
+_Deterministic = Annotated[
+    bool,
+    typer.Option(
+        "--deterministic",
+        help="Give the same bytes on every machine: render with one fixed version of the software rasterizer.",
+    ),
+]
+_Progress = Annotated[
+    str,
+    typer.Option(metavar="bar|json", help="Show a bar (on terminals only), or print a JSON object per pass and frame."),
+]
+
+
 def render(
     graph: GraphFile,
-    output: Annotated[
-        list[str] | None,
-        Outputs,
-    ] = None,
-    each: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--each",
-            metavar="FILE|PATTERN|@LIST|-",
-            help="Render once for each of these files, which {} and {stem} in -i, --set and -o stand for.",
-        ),
-    ] = None,
+    output: _Output = None,
+    each: _Each = None,
     inputs: Inputs = None,
     sets: Sets = None,
     node: Node = "",
@@ -57,67 +110,25 @@ def render(
     scale: Scale = 1.0,
     frame: OneFrame = None,
     frames: Frames = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Skip frames whose files exist and are up to date.")] = False,
-    jobs: Annotated[
-        int,
-        typer.Option(
-            "-j", "--jobs", min=1, help="Share the frames among this many processes, if each frame is independent."
-        ),
-    ] = 1,
+    resume: _Resume = False,
+    jobs: _Jobs = 1,
     cluster: Cluster = "",
     path_map: PathMaps = None,
-    priority: Annotated[
-        int, typer.Option("--priority", help="Frames of jobs with a higher number go first on a cluster.")
-    ] = 0,
-    detach: Annotated[
-        bool,
-        typer.Option("--detach", help="Leave the job to the cluster; halation jobs lists, follows and cancels it."),
-    ] = False,
+    priority: _Priority = 0,
+    detach: _Detach = False,
     precision: Precision = None,
     memory: Memory = None,
     view: View = "",
-    display: Annotated[
-        str, typer.Option(help="OpenColorIO display of these files; by default that of the config.")
-    ] = "",
-    look: Annotated[
-        str, typer.Option(help="OpenColorIO look of these files, instead of the looks of the view; 'none' for no look.")
-    ] = "",
-    colorspace: Annotated[
-        str, typer.Option(metavar="NAME", help="Write colors in this color space, such as ACEScg, in any format.")
-    ] = "",
-    compression: Annotated[
-        str, typer.Option(help="EXR compression: none, rle, zips, zip, piz, pxr24, dwaa, ...")
-    ] = "zip",
-    codec: Annotated[
-        str,
-        typer.Option(
-            help="Codec of videos: h264, h265, prores, prores4444, ffv1, qtrle or vp9; the default depends on the file."
-        ),
-    ] = "",
-    dither: Annotated[
-        str,
-        typer.Option(
-            metavar="blue|none",
-            help="Round colors to 8 and 10 bits with blue noise, which prevents bands, or to the nearest code.",
-        ),
-    ] = "blue",
-    burn_in: Annotated[
-        bool, typer.Option("--burn-in", help="Write the file, timecode and frame over the pictures, for dailies.")
-    ] = False,
+    display: _Display = "",
+    look: _Look = "",
+    colorspace: _Colorspace = "",
+    compression: _Compression = "zip",
+    codec: _Codec = "",
+    dither: _Dither = "blue",
+    burn_in: _BurnIn = False,
     form: Form = None,
-    deterministic: Annotated[
-        bool,
-        typer.Option(
-            "--deterministic",
-            help="Give the same bytes on every machine: render with one fixed version of the software rasterizer.",
-        ),
-    ] = False,
-    progress: Annotated[
-        str,
-        typer.Option(
-            metavar="bar|json", help="Show a bar (on terminals only), or print a JSON object per pass and frame."
-        ),
-    ] = "bar",
+    deterministic: _Deterministic = False,
+    progress: _Progress = "bar",
     timeout: Timeout = DEFAULT_TIMEOUT,
     as_json: AsJson = False,
     *,

@@ -23,39 +23,47 @@ _SHORT = 12
 """Digits of a hash that are printed, as many as git prints in large repositories."""
 
 
+_Picture = Annotated[Path, typer.Argument(help="A picture that Halation rendered: EXR, PNG, TIFF or JPEG.")]
+_Output = Annotated[
+    list[Path] | None, typer.Option("-o", "--output", metavar="FILE", help="Also write the new picture.")
+]
+_Inputs = Annotated[
+    list[str] | None,
+    typer.Option(
+        "-i",
+        "--input",
+        metavar="NAME=FILE",
+        help="The file of an input, or of a node that reads a file, if it has moved.",
+    ),
+]
+_Search = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--search", metavar="DIR", help="Search for moved files in this folder and below, by name and by content."
+    ),
+]
+_Graph = Annotated[
+    Path | None,
+    typer.Option("--graph", metavar="FILE", help="Save the graph of the picture; without -o nothing is rendered."),
+]
+_Tolerance = Annotated[
+    float | None,
+    typer.Option(
+        metavar="X",
+        min=0.0,
+        help="The largest allowed difference of a number; by default 0 if the renderer is the same.",
+    ),
+]
+
+
 def reproduce(
     context: typer.Context,
-    picture: Annotated[Path, typer.Argument(help="A picture that Halation rendered: EXR, PNG, TIFF or JPEG.")],
-    output: Annotated[
-        list[Path] | None, typer.Option("-o", "--output", metavar="FILE", help="Also write the new picture.")
-    ] = None,
-    inputs: Annotated[
-        list[str] | None,
-        typer.Option(
-            "-i",
-            "--input",
-            metavar="NAME=FILE",
-            help="The file of an input, or of a node that reads a file, if it has moved.",
-        ),
-    ] = None,
-    search: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--search", metavar="DIR", help="Search for moved files in this folder and below, by name and by content."
-        ),
-    ] = None,
-    graph: Annotated[
-        Path | None,
-        typer.Option("--graph", metavar="FILE", help="Save the graph of the picture; without -o nothing is rendered."),
-    ] = None,
-    tolerance: Annotated[
-        float | None,
-        typer.Option(
-            metavar="X",
-            min=0.0,
-            help="The largest allowed difference of a number; by default 0 if the renderer is the same.",
-        ),
-    ] = None,
+    picture: _Picture,
+    output: _Output = None,
+    inputs: _Inputs = None,
+    search: _Search = None,
+    graph: _Graph = None,
+    tolerance: _Tolerance = None,
     timeout: Timeout = DEFAULT_TIMEOUT,
     as_json: AsJson = False,
     *,

@@ -36,12 +36,24 @@ if TYPE_CHECKING:
 _FILE = "FILE"
 
 
+_Output = Annotated[
+    list[str],
+    Outputs,
+]
+_Openjd = Annotated[
+    Path | None, typer.Option("--openjd", metavar=_FILE, help="Write a template of Open Job Description 2023-09.")
+]
+_Slurm = Annotated[
+    Path | None, typer.Option("--slurm", metavar=_FILE, help="Write a script for arrays of Slurm (sbatch).")
+]
+_Actions = Annotated[Path | None, typer.Option("--actions", metavar=_FILE, help="Write a workflow of GitHub Actions.")]
+_Chunk = Annotated[int, typer.Option("--chunk", min=1, metavar="N", help="Frames of one task.")]
+_Gpu = Annotated[bool, typer.Option("--gpu", help="Ask for machines with a GPU.")]
+
+
 def submit(
     graph: GraphFile,
-    output: Annotated[
-        list[str],
-        Outputs,
-    ],
+    output: _Output,
     inputs: Inputs = None,
     sets: Sets = None,
     node: Node = "",
@@ -51,17 +63,11 @@ def submit(
     precision: Precision = None,
     memory: Memory = None,
     view: View = "",
-    openjd: Annotated[
-        Path | None, typer.Option("--openjd", metavar=_FILE, help="Write a template of Open Job Description 2023-09.")
-    ] = None,
-    slurm: Annotated[
-        Path | None, typer.Option("--slurm", metavar=_FILE, help="Write a script for arrays of Slurm (sbatch).")
-    ] = None,
-    actions: Annotated[
-        Path | None, typer.Option("--actions", metavar=_FILE, help="Write a workflow of GitHub Actions.")
-    ] = None,
-    chunk: Annotated[int, typer.Option("--chunk", min=1, metavar="N", help="Frames of one task.")] = 10,
-    gpu: Annotated[bool, typer.Option("--gpu", help="Ask for machines with a GPU.")] = False,
+    openjd: _Openjd = None,
+    slurm: _Slurm = None,
+    actions: _Actions = None,
+    chunk: _Chunk = 10,
+    gpu: _Gpu = False,
     as_json: AsJson = False,
     *,
     sandbox: Sandbox,

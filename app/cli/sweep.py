@@ -34,45 +34,50 @@ if TYPE_CHECKING:
     from ..renderer.jobs.sweep import SweepSheet
 
 
+_Output = Annotated[
+    Path, typer.Option("-o", "--output", metavar="FILE", help="The sheet to write: .png, .jpg, .tif or .webp.")
+]
+_Sets = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="NODE.VALUE=X,Y,...",
+        help="Render at each of these values: 1,2,4 or 1..8/4 (4 values) or 1..100/5log; * for all choices; write "
+        "; between colors or vectors.",
+    ),
+]
+_Frame = Annotated[
+    int | None, typer.Option(help="Render all pictures at this frame; by default the first frame of the graph.")
+]
+_Frames = Annotated[str | None, typer.Option(metavar="1-24x8", help="Render a picture at each of these frames.")]
+_Show = Annotated[
+    str, typer.Option("--show", metavar="NAME", help="Show this output of the graph; by default the first.")
+]
+_Cell = Annotated[int, typer.Option(metavar="PIXELS", min=16, max=4096, help="Width of a picture on the sheet.")]
+_Columns = Annotated[int, typer.Option(min=0, help="Pictures per row; by default as fits the number of pictures.")]
+_Cells = Annotated[
+    Path | None, typer.Option("--cells", metavar="DIR", help="Also write each picture as a file into this folder.")
+]
+_Ending = Annotated[str, typer.Option(metavar=".png|.exr|...", help="The file type of --cells.")]
+
+
 def sweep(
     context: typer.Context,
     graph: GraphFile,
-    output: Annotated[
-        Path, typer.Option("-o", "--output", metavar="FILE", help="The sheet to write: .png, .jpg, .tif or .webp.")
-    ],
-    sets: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="NODE.VALUE=X,Y,...",
-            help="Render at each of these values: 1,2,4 or 1..8/4 (4 values) or 1..100/5log; * for all choices; write "
-            "; between colors or vectors.",
-        ),
-    ] = None,
+    output: _Output,
+    sets: _Sets = None,
     inputs: Inputs = None,
     node: Node = "",
     size: SizeText = None,
     scale: Scale = 1.0,
-    frame: Annotated[
-        int | None, typer.Option(help="Render all pictures at this frame; by default the first frame of the graph.")
-    ] = None,
-    frames: Annotated[
-        str | None, typer.Option(metavar="1-24x8", help="Render a picture at each of these frames.")
-    ] = None,
-    show: Annotated[
-        str, typer.Option("--show", metavar="NAME", help="Show this output of the graph; by default the first.")
-    ] = "",
+    frame: _Frame = None,
+    frames: _Frames = None,
+    show: _Show = "",
     view: View = "",
-    cell: Annotated[
-        int, typer.Option(metavar="PIXELS", min=16, max=4096, help="Width of a picture on the sheet.")
-    ] = 480,
-    columns: Annotated[
-        int, typer.Option(min=0, help="Pictures per row; by default as fits the number of pictures.")
-    ] = 0,
-    cells: Annotated[
-        Path | None, typer.Option("--cells", metavar="DIR", help="Also write each picture as a file into this folder.")
-    ] = None,
-    ending: Annotated[str, typer.Option(metavar=".png|.exr|...", help="The file type of --cells.")] = ".png",
+    cell: _Cell = 480,
+    columns: _Columns = 0,
+    cells: _Cells = None,
+    ending: _Ending = ".png",
     precision: Precision = None,
     timeout: Timeout = DEFAULT_TIMEOUT,
     as_json: AsJson = False,

@@ -22,44 +22,54 @@ if TYPE_CHECKING:
 _MARKS = {"passed": "pass", "failed": "FAIL", "blessed": "new ", "skipped": "skip"}
 
 
+_Suites = Annotated[
+    list[Path] | None,
+    typer.Argument(help="Suite files (*.suite.toml), or folders with suites; by default the current folder."),
+]
+_Select = Annotated[
+    str,
+    typer.Option(
+        "-k", "--select", metavar="EXPR", help="Run only cases whose names match: words combined with and, or, not."
+    ),
+]
+_Update = Annotated[
+    bool, typer.Option("--update", help="Approve the new pictures: write goldens that are missing or that fail.")
+]
+_StopEarly = Annotated[bool, typer.Option("-x", "--exitfirst", help="Stop at the first failure.")]
+_Jobs = Annotated[int, typer.Option("-j", "--jobs", min=1, help="Share the cases among this many processes.")]
+_Listed = Annotated[bool, typer.Option("--list", help="Print the names of the cases without rendering.")]
+_Out = Annotated[
+    Path | None,
+    typer.Option("--out", metavar="DIR", help="Write pictures of failures to this folder, as EXR and PNG."),
+]
+_Report = Annotated[
+    Path | None,
+    typer.Option("--report", metavar="FILE.html", help="Write an HTML page that shows the differences, in one file."),
+]
+_Junit = Annotated[
+    Path | None, typer.Option("--junit", metavar="FILE.xml", help="Write the results as JUnit XML, for CI servers.")
+]
+_Deterministic = Annotated[
+    bool,
+    typer.Option(
+        "--deterministic/--no-deterministic",
+        help="Render with one fixed version of the software rasterizer, which gives the same bytes on every "
+        "machine, or with the device of this machine.",
+    ),
+]
+
+
 def test(
-    suites: Annotated[
-        list[Path] | None,
-        typer.Argument(help="Suite files (*.suite.toml), or folders with suites; by default the current folder."),
-    ] = None,
-    select: Annotated[
-        str,
-        typer.Option(
-            "-k", "--select", metavar="EXPR", help="Run only cases whose names match: words combined with and, or, not."
-        ),
-    ] = "",
-    update: Annotated[
-        bool, typer.Option("--update", help="Approve the new pictures: write goldens that are missing or that fail.")
-    ] = False,
-    stop_early: Annotated[bool, typer.Option("-x", "--exitfirst", help="Stop at the first failure.")] = False,
-    jobs: Annotated[int, typer.Option("-j", "--jobs", min=1, help="Share the cases among this many processes.")] = 1,
-    listed: Annotated[bool, typer.Option("--list", help="Print the names of the cases without rendering.")] = False,
-    out: Annotated[
-        Path | None,
-        typer.Option("--out", metavar="DIR", help="Write pictures of failures to this folder, as EXR and PNG."),
-    ] = None,
-    report: Annotated[
-        Path | None,
-        typer.Option(
-            "--report", metavar="FILE.html", help="Write an HTML page that shows the differences, in one file."
-        ),
-    ] = None,
-    junit: Annotated[
-        Path | None, typer.Option("--junit", metavar="FILE.xml", help="Write the results as JUnit XML, for CI servers.")
-    ] = None,
-    deterministic: Annotated[
-        bool,
-        typer.Option(
-            "--deterministic/--no-deterministic",
-            help="Render with one fixed version of the software rasterizer, which gives the same bytes on every "
-            "machine, or with the device of this machine.",
-        ),
-    ] = True,
+    suites: _Suites = None,
+    select: _Select = "",
+    update: _Update = False,
+    stop_early: _StopEarly = False,
+    jobs: _Jobs = 1,
+    listed: _Listed = False,
+    out: _Out = None,
+    report: _Report = None,
+    junit: _Junit = None,
+    deterministic: _Deterministic = True,
     as_json: AsJson = False,
     timeout: Timeout = DEFAULT_TIMEOUT,
     *,

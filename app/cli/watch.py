@@ -43,12 +43,17 @@ _LISTED = 3
 """Changed files that a line names. Chosen by judgement: a line stays short."""
 
 
+_Output = Annotated[
+    list[str],
+    Outputs,
+]
+_Compression = Annotated[str, typer.Option(help="EXR compression, as for render.")]
+_AsJson = Annotated[bool, typer.Option("--json", help="Print a line with a JSON object for every render.")]
+
+
 def watch(
     graph: GraphFile,
-    output: Annotated[
-        list[str],
-        Outputs,
-    ],
+    output: _Output,
     inputs: Inputs = None,
     sets: Sets = None,
     node: Node = "",
@@ -58,8 +63,8 @@ def watch(
     frames: Frames = None,
     precision: Precision = None,
     view: View = "",
-    compression: Annotated[str, typer.Option(help="EXR compression, as for render.")] = "zip",
-    as_json: Annotated[bool, typer.Option("--json", help="Print a line with a JSON object for every render.")] = False,
+    compression: _Compression = "zip",
+    as_json: _AsJson = False,
     timeout: Timeout = DEFAULT_TIMEOUT,
     *,
     sandbox: Sandbox,

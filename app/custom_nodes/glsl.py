@@ -83,6 +83,14 @@ def make_glsl_class(code: Code) -> type[CustomNode]:
     return _make_class(code, expanded, names, types, entry, parameters, inputs, values, outputs, reads_neighbors)
 
 
+def _choose_edge(entry: GlslFunction, parameters: tuple[_Parameter, ...]) -> Edge:
+    """What lies outside of all inputs. Raises CodeFault for notes that contradict each other."""
+    edges = sorted({parameter.note.edge for parameter in parameters if parameter.note.edge})
+    if len(edges) > 1:
+        raise CodeFault(entry.line, f"the inputs have different edges ({', '.join(edges)}): choose one for all of them")
+    return cast("Edge", edges[0]) if edges else "clamp"
+
+
 def _make_class(
     code: Code,
     expanded: str,
@@ -102,11 +110,7 @@ def _make_class(
     digest = blake2b(f"{code.language}\0{source}".encode(), digest_size=4).hexdigest()
     prefix = f"w{digest}_"
     function = prefix + entry.name
-    edges = {parameter.note.edge for parameter in parameters if parameter.note.edge}
-    if len(edges) > 1:
-        raise CodeFault(
-            entry.line, f"the inputs have different edges ({', '.join(sorted(edges))}): choose one for all of them"
-        )
+    edge = _choose_edge(entry, parameters)
     renamed = prefix_names(expanded, functions, prefix)
     with_loop_guards = guard_loops(renamed)
     with_guards = guard_code(with_loop_guards, types)
@@ -117,7 +121,6 @@ def _make_class(
     methods: dict[str, Any] = {"__doc__": _find_doc(source, entry)}
     if reads_neighbors:
         renamed += _write_entry_functions(function, parameters, inputs, values, outputs)
-        edge = cast("Edge", next(iter(edges), "clamp"))
 
         def passes(self: Filter, draw: Draw) -> Mapping[str, Drawn]:
             return make_passes(self, draw, function, edge)
