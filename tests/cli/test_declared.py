@@ -147,6 +147,7 @@ def test_the_demo_and_every_command(tmp_path):
 
 OPTIONAL = {
     "av": "the extra 'video'",
+    "distributed": "the extra 'cluster'",
     "pyoidn": "the extra 'denoise'",
     "pytest": "the plug-in of pytest, which loads it",
 }
