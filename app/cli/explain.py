@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
 
 import typer
 
@@ -26,10 +27,12 @@ from .options import (
 from .outcome import print_json
 
 if TYPE_CHECKING:
-    from ..compiler import Form, Plan, ResolvedLength, Target
+    from collections.abc import Callable, Mapping
+
+    from ..compiler import Form, Plan, Precision, Request, ResolvedLength, Target
     from ..graph import Graph, Output
     from ..inputs.lazy_provider import LazyResourceProvider
-
+    from ..inputs.provider import Binding
 
 _Form = Annotated[
     str,
@@ -39,6 +42,9 @@ _Form = Annotated[
     ),
 ]
 _Dot = Annotated[bool, typer.Option("--dot", help="Print the passes as a Graphviz graph.")]
+_Html = Annotated[
+    Path | None, typer.Option("--html", metavar="FILE", help="Run the passes, and write a page of their pictures.")
+]
 
 
 def explain(
@@ -49,10 +55,11 @@ def explain(
     size: SizeText = None,
     scale: Scale = 1.0,
     frame: OneFrame = None,
-    form: _Form = "compute",
+    form: _Form = "",
     precision: PassPrecision = None,
     memory: Memory = None,
     dot: _Dot = False,
+    html: _Html = None,
     as_json: AsJson = False,
     *,
     sandbox: Sandbox,
@@ -60,8 +67,8 @@ def explain(
     """Print the passes that a graph compiles to.
 
     Prints their nodes, texture formats and slots, bytes and the peak of memory, and how many pixels each length is.
-    Needs no OpenGL, except for --form device, which also prints which form of passes the device of this machine needs,
-    and why.
+    Needs no OpenGL, except for --html and --form device, which also prints which form of passes the device of this
+    machine needs, and why.
     """
     from msgspec.structs import replace
 
@@ -69,9 +76,9 @@ def explain(
     from ..errors import UsageError
     from ..inputs.lazy_provider import LazyResourceProvider
 
-    if dot and as_json:
-        raise UsageError("--dot and --json: choose one")
-    form_or_device, memory_limit = parsing.parse_form_or_device(form), parsing.parse_memory(memory)
+    if dot + as_json + (html is not None) > 1:
+        raise UsageError("--dot, --html and --json: choose one")
+    form_or_device, memory_limit = parsing.parse_form_or_device(form or "compute"), parsing.parse_memory(memory)
     parsed_precision = parsing.parse_precision(precision)
     opened_graph = open_graph(graph, parsing.parse_sets(sets), sandbox=sandbox)
     report_problems(graph, opened_graph)
@@ -85,6 +92,11 @@ def explain(
         frame if frame is not None else provider.find_frames(opened_graph, bindings)[0],
     )
     target = replace(_choose_target(form_or_device, sandbox), memory=memory_limit)
+    if html is not None:
+        wanted_form = form_or_device if form and form_or_device != "device" else None
+        order = _PageOrder(html, opened_graph, bindings, wanted_form, memory_limit, parsed_precision)
+        _write_page(order, request, sandbox)
+        return 0
     # Planned as for one EXR file per output.
     request = replace(request, by_rows=frozenset(request.targets or opened_graph.outputs))
     plan = compiler.compile_graph(opened_graph, request, provider, target=target, precision=parsed_precision)
@@ -101,6 +113,41 @@ def explain(
 
 def _length_facts(length: ResolvedLength) -> dict[str, Any]:
     return {"value": str(length.port), "number": length.number, "unit": length.unit, "pixels": length.pixels}
+
+
+class _PageOrder(NamedTuple):
+    """A page to write, and how its passes are planned and run."""
+
+    output: Path
+    graph: Graph
+    bindings: Mapping[str, Binding | Callable[[int], Binding]]
+    form: Form | None
+    memory: int
+    precision: Precision | None
+
+
+def _write_page(order: _PageOrder, request: Request, sandbox: Sandbox) -> None:
+    """Run the passes of one frame, and write a page of what they make. Raises OutputError, and errors of renders."""
+    from ..document.about import find_about
+    from ..export.passes_page import PassesPage
+    from ..inputs.default_view import choose_default_view
+    from ..renderer import Renderer, RenderRequest, open_device
+    from ..resources.atomic_write import write_text_atomically
+
+    renderer = Renderer(open_device(order.form, order.memory, sandbox=sandbox), budget=0, sandbox=sandbox)
+    graph, output, targets = order.graph, order.output, request.targets
+    plan = renderer.compile(
+        graph, RenderRequest(order.bindings, targets, request.size, request.scale, request.frame, order.precision)
+    )
+    renderer.runner.measure(plan)  # a first run, in which drivers compile: the times of the second one are shown
+    name, surface = next(iter(plan.outputs.items()))
+    view = graph.outputs[name].view if name in graph.outputs else ""
+    title = output.stem.replace("_", " ")
+    page = PassesPage(plan, title, find_about(graph).doc, view or choose_default_view(plan, surface, renderer.pictures))
+    page.add_pixels({upload.surface: renderer.pictures.load_pixels(upload.picture) for upload in plan.uploads})
+    for trace in renderer.runner.trace(plan):
+        page.add_pass(trace)
+    write_text_atomically(output, page.text, sandbox)
 
 
 def _describe_views(graph: Graph, plan: Plan, provider: LazyResourceProvider) -> dict[str, str]:

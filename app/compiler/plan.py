@@ -55,6 +55,8 @@ class Surface(Struct, frozen=True):
     last: int
     window: Region | None = None
     """The part of its picture that it holds; None for all of it."""
+    is_data: bool = False
+    """True for numbers that are no light: depth, ids, measurements."""
 
     @property
     def components(self) -> int:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from .engine import DEFAULT_BUDGET, Renderer, RenderRequest
     from .execution.executor import RunnerCounters
     from .execution.run import Run
-    from .execution.runner import Runner
+    from .execution.runner import PassTrace, Runner
     from .execution.texture_pool import TextureLease
     from .frame_renderer import FrameRenderer
     from .opening import open_device
@@ -37,6 +37,7 @@ __all__ = [
     "FrameRenderer",
     "Look",
     "NonfinitePixel",
+    "PassTrace",
     "PixelProbe",
     "RenderRequest",
     "Renderer",
@@ -67,6 +68,7 @@ _HOMES = MappingProxyType(
         "FrameRenderer": "frame_renderer",
         "Renderer": "engine",
         "Run": "execution.run",
+        "PassTrace": "execution.runner",
         "Runner": "execution.runner",
         "RenderRequest": "engine",
         "find_first_nonfinite": "viewing.probe",

@@ -65,6 +65,7 @@ def schedule(
             first[ref],
             last[ref],
             program.windows.get(ref),
+            program.shape(ref).data,
         )
         for ref in needed
     )

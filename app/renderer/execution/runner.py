@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable
+from collections.abc import Container, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
 from weakref import WeakValueDictionary
@@ -25,6 +25,14 @@ class TiledOutputs(Struct, frozen=True, eq=False, weakref=True):
     """Pixels by name that are not on the device."""
 
     pixels: dict[str, Array]
+
+
+class PassTrace(Struct, frozen=True, eq=False):
+    """A pass that has run: its seconds on the device, and the pixels of its surfaces by their numbers."""
+
+    render_pass: Pass
+    seconds: float
+    pixels: dict[int, Array]
 
 
 class Runner:
@@ -85,6 +93,23 @@ class Runner:
         finally:
             lease.close()
         return timings
+
+    def trace(self, plan: Plan) -> Iterator[PassTrace]:
+        """Run a plan, and give what each pass has made as soon as it is done.
+
+        Raises DeviceError for a plan that needs tiles.
+        """
+        lease, timings = self.create_lease(), PassTimings()
+        try:
+            with self.start_run(plan, lease, timings=timings) as run:
+                for render_pass in run:
+                    with self.device.make_current():
+                        pixels = {
+                            number: self._executor.download(plan, number, ArrayPool()) for number in render_pass.targets
+                        }
+                    yield PassTrace(render_pass, timings[-1][1], pixels)
+        finally:
+            lease.close()
 
     def compile(self, render_pass: Pass) -> None:
         """Have the program of a pass at hand. Raises ShaderError."""

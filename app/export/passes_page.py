@@ -1,0 +1,180 @@
+"""Writes the passes of a graph as one HTML page: what each reads and makes, as pictures, its time and its GLSL.
+
+The page loads nothing and runs nothing: pictures are inside it, and it has no script. All that comes from a graph, such
+as the names of its nodes, is escaped.
+"""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from collections.abc import Iterable, Mapping
+from html import escape
+from pathlib import Path
+
+import numpy as np
+from msgspec import Struct, field
+from pygments import highlight
+from pygments.formatters import HtmlFormatter
+from pygments.lexers.graphics import GLShaderLexer
+
+from ..compiler import Pass, Plan, Shader, Surface
+from ..compiler.explain import describe_frames, format_bytes
+from ..media.pictures.stored import Array, StoredPart, encode_for_viewing, encode_png
+from ..renderer import PassTrace
+from ..version import VERSION
+from .shipped_files import read_shipped_text
+
+WIDTH = 320
+"""Pixels across of a picture on the page: two of them and their reads fit beside each other on a laptop."""
+
+
+class Thumbnail(Struct, frozen=True):
+    """A small PNG of a surface, and what is black and white in it."""
+
+    png: bytes
+    span: tuple[float, float] | None
+    """For data: the numbers that are shown black and white."""
+
+
+class PassesPage(Struct):
+    """Collects the passes of a plan while they run; `text` is the page."""
+
+    plan: Plan
+    title: str
+    about: str
+    view: str
+    """Through which view light is shown."""
+    seconds: list[float] = field(default_factory=list[float])
+    thumbnails: dict[int, Thumbnail] = field(default_factory=dict[int, Thumbnail])
+
+    def add_pixels(self, pixels: Mapping[int, Array]) -> None:
+        """Keep small pictures of surfaces, [height, width, channels], by their numbers."""
+        for number, array in pixels.items():
+            self.thumbnails[number] = make_thumbnail(array, self.plan.surfaces[number], self.view)
+
+    def add_pass(self, trace: PassTrace) -> None:
+        """Add the next pass that has run."""
+        self.seconds.append(trace.seconds)
+        self.add_pixels(trace.pixels)
+
+    @property
+    def text(self) -> str:
+        """The page."""
+        filled = {
+            "GENERATOR": f"Halation {VERSION}",
+            "TITLE": escape(self.title),
+            "ABOUT": escape(self.about),
+            "FACTS": "".join(f"<dt>{escape(name)}</dt><dd>{escape(fact)}</dd>" for name, fact in self._list_facts()),
+            "SECTIONS": "\n".join((self._describe_uploads(), *map(self._describe_pass, range(len(self.plan.passes))))),
+        }
+        text = read_shipped_text("passes.html")
+        for name, part in filled.items():
+            text = text.replace(f"/*{name}*/", part)
+        return text
+
+    def _list_facts(self) -> Iterable[tuple[str, str]]:
+        plan, programs = self.plan, len({render_pass.shader for render_pass in self.plan.passes})
+        yield "Device", f"{plan.target.renderer}, OpenGL {plan.target.version / 100:.1f}, {plan.target.form} passes"
+        yield "Passes", f"{len(plan.passes)} by {programs} programs, {1000.0 * sum(self.seconds):.1f} ms together"
+        yield "Memory", f"{len(plan.surfaces)} pictures in {len(plan.slots)} textures, {format_bytes(plan.peak_bytes)}"
+        yield "Frames", describe_frames(plan)
+        yield "Outputs", ", ".join(f"{name} (#{number})" for name, number in plan.outputs.items())
+        yield (
+            "Light is shown",
+            "as its numbers" if self.view == "none" else f"through {self.view or 'the default view'}",
+        )
+
+    def _describe_uploads(self) -> str:
+        figures = [
+            self._draw_figure(upload.surface, f"{upload.node}: {Path(upload.picture.path).name} {upload.picture.layer}")
+            for upload in self.plan.uploads
+        ]
+        if not figures:
+            return ""
+        pictures = f'<div class="pictures writes">{"".join(figures)}</div>'
+        return f'<section id="files"><h2>Read from outside</h2>{pictures}</section>'
+
+    def _describe_pass(self, index: int) -> str:
+        render_pass, surfaces = self.plan.passes[index], self.plan.surfaces
+        milliseconds, longest = 1000.0 * self.seconds[index], max(self.seconds) or 1.0
+        share = 100.0 * self.seconds[index] / longest
+        read = "".join(self._draw_figure(number, surfaces[number].label) for number in render_pass.textures)
+        written = "".join(self._draw_figure(number, surfaces[number].label) for number in render_pass.targets)
+        nodes, functions = ", ".join(render_pass.nodes), ", ".join(dict.fromkeys(render_pass.functions))
+        return (
+            f'<section id="pass-{index}"><h2>{index}. {escape(nodes)} <span class="dim">{escape(functions)}</span></h2>'
+            f'<p class="time" style="background-size: {share:.1f}% 100%">{milliseconds:.2f} ms</p><div class="row">'
+            + (f'<div><h3>Reads</h3><div class="pictures reads">{read}</div></div>' if read else "")
+            + f'<div><h3>Makes</h3><div class="pictures writes">{written}</div></div></div>'
+            f"{_describe_numbers(render_pass)}{self._describe_program(index)}</section>"
+        )
+
+    def _describe_program(self, index: int) -> str:
+        render_pass = self.plan.passes[index]
+        if render_pass.host is not None:
+            return f'<p class="dim">On the processor: {escape(render_pass.host.program.name)}</p>'
+        first = next(at for at, other in enumerate(self.plan.passes) if other.shader == render_pass.shader)
+        if first < index:
+            return f'<p class="dim">The same program as <a href="#pass-{first}">pass {first}</a></p>'
+        return _describe_shader(render_pass.shader)
+
+    def _draw_figure(self, number: int, label: str) -> str:
+        surface, thumbnail = self.plan.surfaces[number], self.thumbnails.get(number)
+        makers = [at for at, render_pass in enumerate(self.plan.passes) if number in render_pass.targets]
+        target = f"pass-{makers[0]}" if makers else "files"
+        picture = span = ""
+        if thumbnail is not None:
+            encoded = b64encode(thumbnail.png).decode()
+            picture = f'<img src="data:image/png;base64,{encoded}" alt="{escape(label)}">'
+            span = f", {thumbnail.span[0]:.4g} is black, {thumbnail.span[1]:.4g} white" if thumbnail.span else ""
+        width, height = surface.size
+        return (
+            f'<figure>{picture}<figcaption><a href="#{target}">#{number}</a> {escape(label)}<br>'
+            f"{width}x{height} {surface.texel}, {format_bytes(surface.nbytes)}, texture {surface.slot}{span}"
+            "</figcaption></figure>"
+        )
+
+
+def make_thumbnail(array: Array, surface: Surface, view: str) -> Thumbnail:
+    """A small PNG of the pixels of a surface: light through a view, data from its least number to its largest."""
+    step = max(1, -(-array.shape[1] // WIDTH))
+    if not surface.is_data and surface.channels == 4:
+        small = _average_blocks(array, step)
+        return Thumbnail(encode_png(encode_for_viewing(StoredPart(small, ("R", "G", "B", "A"), False), view)), None)
+    small = np.ascontiguousarray(array[::step, ::step], np.float32)  # a mean of data lies on no surface
+    finite = small[np.isfinite(small)]
+    span = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+    return Thumbnail(encode_png(encode_for_viewing(StoredPart(small, ("data",), False), "", span)), span)
+
+
+def _average_blocks(array: Array, step: int) -> Array:
+    """The means of blocks of `step` pixels on each side. Rows and columns that fill no block are left out."""
+    height, width, channels = max(1, array.shape[0] // step), array.shape[1] // step, array.shape[2]
+    blocks = array[: height * step, : width * step].astype(np.float32)
+    return blocks.reshape(height, -1, width, step, channels).mean((1, 3), dtype=np.float32)
+
+
+def _describe_numbers(render_pass: Pass) -> str:
+    """The uniforms of a pass."""
+    rows = "".join(
+        f"<tr><td>{escape(name)}</td><td>{escape(_spell_number(number))}</td></tr>"
+        for name, number in render_pass.uniforms
+    )
+    return (
+        f"<details><summary>{len(render_pass.uniforms)} numbers</summary><table>{rows}</table></details>"
+        if rows
+        else ""
+    )
+
+
+def _spell_number(number: object) -> str:
+    if isinstance(number, tuple):
+        return ", ".join(map(_spell_number, number))
+    return f"{number:.6g}" if isinstance(number, float) else str(number)
+
+
+def _describe_shader(shader: Shader) -> str:
+    """The program, highlighted by Pygments, which escapes it."""
+    code = highlight(shader.source, GLShaderLexer(), HtmlFormatter(nowrap=True))
+    lines = shader.source.count("\n") + 1
+    return f"<details><summary>GLSL, {lines} lines</summary><pre>{code}</pre></details>"
