@@ -26,6 +26,7 @@ from ..cluster.render_process import IDLE_SECONDS
 from ..cluster.versions import describe_versions, find_version_fault
 from ..errors import DeviceError, GraphError, HalationError, InputError, UsageError
 from ..graph.paths import change_paths, resolve_path
+from ..regression.cluster_cases import run_case_text
 from ..resources.input_files import content_hash, fingerprint
 from . import parsing
 from .job_setup import describe_costs, make_output_settings, make_request, open_renderer
@@ -53,7 +54,10 @@ def render_chunks(sandbox: Sandbox) -> int:
         renderer = ChunkRenderer(Path(folder), _write_line, sandbox)
         try:
             for line in _read_lines():
-                renderer.render(FrameChunk.from_json(line))
+                if line.startswith('{"case"'):
+                    _write_line(run_case_text(line))
+                else:
+                    renderer.render(FrameChunk.from_json(line))
         except KeyboardInterrupt:  # the job is cancelled, and who cancels it says so
             return INTERRUPTED
     return 0

@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
+from ..errors import UsageError
 from ..resources.render_choices import DEFAULT_TIMEOUT
 from ..resources.sandbox import Sandbox
-from .options import AsJson
+from .options import AsJson, Cluster
 from .outcome import print_json, print_note
 from .watchdog import PoolWatchdog, Timeout, run_session
 
 if TYPE_CHECKING:
     from ..regression.case_runner import RunOptions
     from ..regression.cases import Case
-    from ..regression.parallel import Supervisor
+    from ..regression.parallel import CaseSharing, Supervisor
     from ..regression.results import Outcome
 
 _MARKS = {"passed": "pass", "failed": "FAIL", "blessed": "new ", "skipped": "skip"}
@@ -65,6 +67,7 @@ def test(
     update: _Update = False,
     stop_early: _StopEarly = False,
     jobs: _Jobs = 1,
+    cluster: Cluster = "",
     listed: _Listed = False,
     out: _Out = None,
     report: _Report = None,
@@ -87,18 +90,31 @@ def test(
         return _list_cases(cases, as_json)
     reports = _ReportFiles(report, junit, as_json)
 
-    def work(supervisor: Supervisor | None = None) -> int:
+    def work(supervisor: Supervisor | None = None, share: CaseSharing | None = None) -> int:
         from ..regression.case_runner import RunOptions
 
         options = RunOptions(sandbox, update, out, pictures=report is not None, deterministic=deterministic)
-        return _run_and_report(cases, options, jobs, stop_early, reports, supervisor)
+        return _run_and_report(cases, options, jobs, stop_early, reports, supervisor, share)
 
+    if cluster:
+        return _run_on_cluster(cluster, jobs, lambda share: work(None, share))
     if jobs == 1:
         return run_session(work, timeout, as_json)
     import tempfile
 
     with tempfile.TemporaryDirectory(prefix="halation-") as folder:
         return work(PoolWatchdog(Path(folder), timeout))
+
+
+def _run_on_cluster(address: str, jobs: int, work: Callable[[CaseSharing], int]) -> int:
+    """Run cases on the workers of a cluster."""
+    from ..cluster.connection import open_client
+    from ..regression.cluster_cases import share_cases
+
+    if jobs > 1:
+        raise UsageError("--cluster and -j: give one of them; --cluster local:4 has four workers on this machine")
+    with open_client(address) as client:
+        return work(lambda cases, options: share_cases(client, address, cases, options))
 
 
 class _ReportFiles(NamedTuple):
@@ -116,6 +132,7 @@ def _run_and_report(
     stop_early: bool,
     files: _ReportFiles,
     supervisor: Supervisor | None,
+    share: CaseSharing | None,
 ) -> int:
     """Run cases, write all reports, and return the exit code."""
     from ..regression.junit import write_junit
@@ -131,6 +148,7 @@ def _run_and_report(
         stop_early=stop_early,
         report_outcome=None if files.as_json else _print_outcome,
         supervisor=supervisor,
+        share=share,
     )
     if files.page is not None:
         write_report(session, files.page, sandbox=options.sandbox)

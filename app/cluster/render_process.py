@@ -20,6 +20,8 @@ from contextlib import contextmanager
 from typing import Any
 from urllib.parse import urlsplit
 
+from msgspec import Struct, field
+
 from ..renderer.jobs.render_job import RenderJob, worker_command
 from ..resources.machine import available_cores, resident_memory
 from .chunk import ChunkReport, FrameChunk
@@ -40,6 +42,14 @@ ProcessKind = tuple[bool, str, int, str]
 def find_kind(job: RenderJob) -> ProcessKind:
     """What a process is opened for; jobs of one kind share its device."""
     return job.deterministic, job.form or "", job.memory, job.sandbox.root
+
+
+class ProcessAnswer(Struct, frozen=True):
+    """What a process has answered, or why it has not."""
+
+    facts: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    death: str = ""
+    is_cancelled: bool = False
 
 
 class RenderProcess:
@@ -76,38 +86,47 @@ class RenderProcess:
         seconds: dict[int, float] = {}
         kept: list[int] = []
 
-        def report(**facts: Any) -> ChunkReport:
-            return ChunkReport("", seconds, tuple(kept), **facts)
+        def note_frame(event: dict[str, Any]) -> None:
+            seconds[event["frame"]] = event["seconds"]
+            kept.extend([event["frame"]] * bool(event["kept"]))
+            report_frame(event)
 
+        answer = self.ask(chunk.to_json(), note_frame, is_cancelled, memory_limit)
+        faults = {int(frame): fault for frame, fault in answer.facts.get("faults", {}).items()}
+        costs, refusal = answer.facts.get("costs", {}), answer.facts.get("refusal", "")
+        return ChunkReport("", seconds, tuple(kept), faults, costs, answer.death, refusal, answer.is_cancelled)
+
+    def ask(
+        self,
+        line: str,
+        note_frame: Callable[[dict[str, Any]], None],
+        is_cancelled: Callable[[], bool],
+        memory_limit: int,
+    ) -> ProcessAnswer:
+        """Send a line of JSON and wait for the answer, which lines about frames may precede."""
         assert self._process.stdin is not None
         with contextlib.suppress(OSError):
-            self._process.stdin.write(f"{chunk.to_json()}\n")
+            self._process.stdin.write(f"{line}\n")
             self._process.stdin.flush()
         checked_at = time.monotonic()
         while True:
-            line = self._read_line()
+            answer_line = self._read_line()
             if time.monotonic() - checked_at > CHECK_INTERVAL:
                 checked_at = time.monotonic()
                 if is_cancelled():
                     self.stop()
-                    return report(is_cancelled=True)
+                    return ProcessAnswer(is_cancelled=True)
                 if 0 < memory_limit < resident_memory(self._process.pid):
                     self.stop()
-                    return report(death=f"it takes more than the {memory_limit / 2**30:.1f} GiB of its worker")
-            if line == "":
+                    return ProcessAnswer(death=f"it takes more than the {memory_limit / 2**30:.1f} GiB of its worker")
+            if answer_line == "":
                 continue
-            if line is None:
-                return report(death=self._describe_end())
-            event: Mapping[str, Any] = json.loads(line)
-            if "frame" in event:
-                seconds[event["frame"]] = event["seconds"]
-                kept += [event["frame"]] * bool(event["kept"])
-                report_frame(dict(event))
-            elif "refusal" in event:
-                return report(refusal=event["refusal"])
-            else:
-                faults = {int(frame): fault for frame, fault in event["faults"].items()}
-                return report(faults=faults, costs=event["costs"])
+            if answer_line is None:
+                return ProcessAnswer(death=self._describe_end())
+            event: dict[str, Any] = json.loads(answer_line)
+            if "frame" not in event:
+                return ProcessAnswer(event)
+            note_frame(event)
 
     def finish(self) -> None:
         """Send no more chunks, so that the process ends."""
@@ -159,10 +178,9 @@ class RenderProcessPool:
         self._lock = threading.Lock()
 
     @contextmanager
-    def lend_process(self, chunk: FrameChunk, address: str) -> Iterator[RenderProcess]:
-        """A warm process for a chunk, started if none is free."""
-        kind = find_kind(chunk.job)
-        process = self._take(kind) or RenderProcess(_share_cores(chunk, address))
+    def lend_process(self, kind: ProcessKind, threads: int) -> Iterator[RenderProcess]:
+        """A warm process of a kind, started with so many `threads` if none is free."""
+        process = self._take(kind) or RenderProcess(threads)
         try:
             yield process
         except BaseException:
@@ -200,6 +218,6 @@ def find_machine(address: str) -> str:
     return "" if address.startswith("inproc") else urlsplit(address).hostname or ""
 
 
-def _share_cores(chunk: FrameChunk, address: str) -> int:
+def share_cores(slots: Mapping[str, int], address: str) -> int:
     """Threads for a process where several on one machine render side by side; each using all cores is slower."""
-    return max(1, available_cores() // max(1, chunk.slots.get(find_machine(address), 1)))
+    return max(1, available_cores() // max(1, slots.get(find_machine(address), 1)))

@@ -12,7 +12,7 @@ from msgspec.structs import replace
 from ..errors import UsageError
 from ..resources.machine import machine_memory
 from .chunk import ChunkReport, FrameChunk
-from .render_process import RenderProcessPool
+from .render_process import RenderProcessPool, find_kind, share_cores
 
 if TYPE_CHECKING:
     from distributed import Worker
@@ -36,7 +36,7 @@ def render_chunk(text: str) -> str:
     limit = read_memory_limit(worker)
     chunk = replace(chunk, job=replace(chunk.job, memory=choose_memory(chunk.job.memory, limit)))
     reporter = _FrameReporter(worker, chunk.topic)
-    with open_pool().lend_process(chunk, worker.address) as process:
+    with open_pool().lend_process(find_kind(chunk.job), share_cores(chunk.slots, worker.address)) as process:
         report = process.render(chunk, reporter.report_frame, make_cancel_check(worker), limit)
     reporter.flush()
     return replace(report, worker=worker.address).to_json()

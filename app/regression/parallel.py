@@ -9,7 +9,6 @@ from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing, contextmanager
-from dataclasses import dataclass
 from functools import cache
 from multiprocessing import get_context, parent_process
 from pathlib import Path
@@ -23,9 +22,12 @@ from ..resources.sandbox import Sandbox
 from ..version import VERSION
 from .case_runner import RunOptions, run_case
 from .cases import Case
-from .results import Outcome, RegressionRun
+from .results import CaseResult, Outcome, RegressionRun
 
 OutcomeListener = Callable[[Outcome], None]
+
+CaseSharing = Callable[[Sequence[Case], RunOptions], Generator[CaseResult, None, None]]
+"""Runs cases elsewhere, in any order."""
 
 _CHECK_INTERVAL = 0.05
 """Seconds between two looks at processes that work."""
@@ -42,15 +44,6 @@ class Supervisor(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class _CaseResult:
-    """The outcome of a case, and the device that it ran on."""
-
-    outcome: Outcome
-    device: str
-    software: bool
-
-
 def run_cases(
     cases: Sequence[Case],
     options: RunOptions,
@@ -59,20 +52,20 @@ def run_cases(
     stop_early: bool = False,
     report_outcome: OutcomeListener | None = None,
     supervisor: Supervisor | None = None,
+    share: CaseSharing | None = None,
 ) -> RegressionRun:
     """Run cases; `report_outcome` is called with each as it ends. `stop_early` stops after the first failure.
 
-    If there are several processes, `supervisor` watches them. Raises DeviceError without OpenGL and for code that the
-    supervisor stopped, OutputError for a folder that cannot be written.
+    If there are several processes, `supervisor` watches them. `share` runs the cases elsewhere. Raises DeviceError
+    without OpenGL and for code that the supervisor stopped, OutputError for a folder that cannot be written.
     """
     started = time.perf_counter()
     outcomes: dict[str, Outcome] = {}
     device, software = "", True
     processes = min(jobs, len(cases))
     shared = processes > 1
-    with closing(
-        _run_shared(cases, options, processes, supervisor) if shared else _run_alone(cases, options)
-    ) as results:
+    run_shared = share or (lambda cases, options: _run_shared(cases, options, processes, supervisor))
+    with closing(run_shared(cases, options) if shared or share else _run_alone(cases, options)) as results:
         for result in results:
             outcomes[result.outcome.case.id], device, software = result.outcome, result.device, result.software
             if report_outcome is not None:
@@ -90,7 +83,7 @@ def run_cases(
     )
 
 
-def _run_alone(cases: Iterable[Case], options: RunOptions) -> Generator[_CaseResult, None, None]:
+def _run_alone(cases: Iterable[Case], options: RunOptions) -> Generator[CaseResult, None, None]:
     renderer = _open_renderer(options.deterministic, options.sandbox)
     for case in cases:
         yield _run_and_describe(case, renderer, options)
@@ -98,14 +91,14 @@ def _run_alone(cases: Iterable[Case], options: RunOptions) -> Generator[_CaseRes
 
 def _run_shared(
     cases: Sequence[Case], options: RunOptions, jobs: int, supervisor: Supervisor | None
-) -> Generator[_CaseResult, None, None]:
+) -> Generator[CaseResult, None, None]:
     # If each process used all cores, they would only slow each other down.
     threads = str(max(1, (os.cpu_count() or 1) // jobs))
     folder = supervisor.folder if supervisor else None
     pool = ProcessPoolExecutor(jobs, get_context("spawn"), _prepare_worker, (threads, folder))
     try:
         with _ignore_interrupts():
-            waiting = {pool.submit(_run_in_worker, case, options) for case in cases}
+            waiting = {pool.submit(run_in_worker, case, options) for case in cases}
         while waiting:
             ended, waiting = wait(waiting, _CHECK_INTERVAL if supervisor else None, FIRST_COMPLETED)
             for future in ended:
@@ -155,12 +148,13 @@ def _prepare_worker(threads: str, heartbeats: Path | None) -> None:
     Thread(target=end, name="parent", daemon=True).start()
 
 
-def _run_in_worker(case: Case, options: RunOptions) -> _CaseResult:
+def run_in_worker(case: Case, options: RunOptions) -> CaseResult:
+    """The outcome of a case in a process of its own, whose device stays open for the next one."""
     return _run_and_describe(case, _open_renderer(options.deterministic, options.sandbox), options)
 
 
-def _run_and_describe(case: Case, renderer: engine.Renderer, options: RunOptions) -> _CaseResult:
-    return _CaseResult(run_case(case, renderer, options), renderer.device.description, renderer.device.target.software)
+def _run_and_describe(case: Case, renderer: engine.Renderer, options: RunOptions) -> CaseResult:
+    return CaseResult(run_case(case, renderer, options), renderer.device.description, renderer.device.target.software)
 
 
 @cache

@@ -69,6 +69,15 @@ class Outcome:
 
 
 @dataclass(frozen=True)
+class CaseResult:
+    """The outcome of a case, and the device that it ran on."""
+
+    outcome: Outcome
+    device: str
+    software: bool
+
+
+@dataclass(frozen=True)
 class RegressionRun:
     """All outcomes in order, and what they were made with. `remark` says what could not be pinned."""
 

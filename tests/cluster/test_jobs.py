@@ -60,3 +60,29 @@ def test_only_workers_with_a_gpu_render_where_there_are_some(halation, shot, far
         time.sleep(0.1)  # until the new worker is connected
     ending = halation("render", "shot.json", *words, "--deterministic")
     assert json.loads(ending.out)["workers"] > 1 and len(list(shot.glob("f.*.exr"))) == len(FRAMES)
+
+
+def test_a_suite_is_shared_and_reports_what_one_process_does(halation, shot, farm):
+    cases = """
+    [cases.look]
+    graph = "shot.json"
+    frames = [1, 2]
+    golden = "golden.####.exr"
+    [cases.missing]
+    graph = "shot.json"
+    frames = [99]
+    golden = ""
+    [cases.expected]
+    graph = "shot.json"
+    frames = [99]
+    golden = ""
+    error = "there is no"
+    """
+    (shot / "a.suite.toml").write_text(cases)
+    halation("test", "--update")
+    here, there = halation("test", "--json"), halation("test", "--json", "--cluster", farm.address)
+    assert here.code == there.code == 1, there.err
+    reports = [json.loads(ending.out) for ending in (here, there)]
+    outcomes = [{case["id"]: case["status"] for case in report["cases"]} for report in reports]
+    assert outcomes[0] == outcomes[1] and set(outcomes[0].values()) == {"failed", "passed"}, outcomes
+    assert halation("test", "--cluster", farm.address, "-j", "2").code == 2

@@ -1,0 +1,126 @@
+"""Measures `render --cluster`, and computes what a large cluster would reach: the figures of docs/cluster.md.
+
+.venv/bin/python tests/bench/cluster.py measure     # minutes, on an idle machine
+.venv/bin/python tests/bench/cluster.py simulate
+"""
+
+from __future__ import annotations
+
+import heapq
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+HALATION = (sys.executable, "-m", "halation.cli")
+TRIVIAL = {
+    "halation": 1,
+    "nodes": {"c": {"type": "constant"}},
+    "outputs": {"image": {"type": "Image"}},
+    "links": {"outputs.image": "c.out"},
+    "settings": {"size": [16, 9]},
+}
+
+
+def run(folder: Path, *words: object) -> tuple[float, float, dict[str, object]]:
+    """The seconds that a render takes, those of processors, and its report. Each process draws with one thread."""
+    before, started = os.times(), time.perf_counter()
+    command = [*HALATION, "render", *map(str, words), "--json"]
+    environment = {**os.environ, "LP_NUM_THREADS": "1"}
+    ended = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=True)
+    seconds, after = time.perf_counter() - started, os.times()
+    processor = after.children_user + after.children_system - before.children_user - before.children_system
+    return seconds, processor, json.loads(ended.stdout)
+
+
+def measure_overhead(folder: Path, size: str, counts: tuple[int, int], rounds: int) -> None:
+    """Seconds that a frame adds by -j 4 and by four workers, in turn: any number of frames has the same start."""
+    shares = {"-j 4": ("-j", 4), "--cluster local:4": ("--cluster", "local:4")}
+    measured: dict[tuple[str, int], list[tuple[float, float]]] = {}
+    for _ in range(rounds):
+        for count in counts:
+            for name, share in shares.items():
+                words = ("cinematic_grade", "--size", size, "--frames", f"1-{count}", "-o", "f.####.exr")
+                measured.setdefault((name, count), []).append(run(folder, *words, *share)[:2])
+    for name in shares:
+        few, many = (measured[name, count] for count in counts)
+        per_frame = [
+            (min(pair[part] for pair in many) - min(pair[part] for pair in few)) / (counts[1] - counts[0])
+            for part in (0, 1)
+        ]
+        print(f"{name}: {per_frame[0]:.4f} s a frame, {per_frame[1]:.4f} s of processors", few, many)
+
+
+def measure_scaling(folder: Path, frames: int, size: str) -> None:
+    """The same frames by one, two and four workers with a thread each."""
+    words = ("cinematic_grade", "--size", size, "--frames", f"1-{frames}", "-o", "f.####.exr")
+    for count in (1, 2, 4):
+        print(f"local:{count}: {run(folder, *words, '--cluster', f'local:{count}')[0]:.2f} s for {frames} frames")
+
+
+def measure_rate(folder: Path, frames: int) -> None:
+    """Frames that cost nothing, and as many empty tasks of plain Dask."""
+    from distributed import Client, LocalCluster
+
+    (folder / "trivial.json").write_text(json.dumps(TRIVIAL))
+    words = ("trivial.json", "-o", "t.####.exr", "--cluster", "local:4")
+    start = run(folder, *words, "--frames", "1-1")[0]
+    print(f"start: {start:.2f} s for one frame that costs nothing")
+    seconds, _, report = run(folder, *words, "--frames", f"1-{frames}")
+    rates = f"{frames / seconds:.0f} frames a second, {frames / (seconds - start):.0f} after the start"
+    print(f"--cluster local:4: {rates}, {report['chunks']} chunks")
+    cluster = LocalCluster(4, threads_per_worker=1, processes=False, dashboard_address=":0")
+    with cluster, Client(cluster) as dask:
+        started = time.perf_counter()
+        dask.gather(dask.map(abs, range(frames), pure=False))
+        print(f"plain Dask: {frames / (time.perf_counter() - started):.0f} empty tasks a second")
+
+
+def simulate(
+    workers: int, frames: int, render: float, bytes_read: float, storage: float, chunk_seconds: float
+) -> float:
+    """Seconds for all frames: each chunk waits for the scheduler, then for the storage, then renders."""
+    scheduler, dispatch, drain = 0.0, 0.004, 0.04
+    size = max(1, int(chunk_seconds / render))
+    free = [(0.6, number) for number in range(workers)]
+    storage_free = end = 0.0
+    left = frames
+    while left:
+        at, number = heapq.heappop(free)
+        count = min(size, max(1, left // (2 * workers)), left)
+        left -= count
+        scheduler = max(scheduler, at) + dispatch
+        storage_free = max(storage_free, scheduler) + count * bytes_read / storage
+        done = max(scheduler + count * render + drain, storage_free)
+        end = max(end, done)
+        heapq.heappush(free, (done, number))
+    return end
+
+
+def print_simulation() -> None:
+    """A table for docs/cluster.md: 100,000 frames."""
+    print("| seconds a frame | MB read | workers | frames a second | share of the ideal |")
+    for render, megabytes in ((0.1, 0.0), (0.5, 0.0), (0.5, 10.0), (5.0, 10.0), (5.0, 50.0)):
+        for workers in (10, 100, 1000):
+            seconds = simulate(workers, 100_000, render, megabytes * 1e6, 2.5e9, 4.0)
+            ideal = 100_000 * render / workers
+            print(f"| {render} | {megabytes:g} | {workers} | {100_000 / seconds:.0f} | {ideal / seconds:.0%} |")
+
+
+def main() -> None:
+    """Do what the first word says."""
+    if sys.argv[1:2] == ["simulate"]:
+        print_simulation()
+        return
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        measure_rate(folder, 10_000)
+        measure_overhead(folder, "1280x720", (8, 72), 2)
+        measure_scaling(folder, 24, "1280x720")
+
+
+if __name__ == "__main__":
+    main()
