@@ -156,7 +156,7 @@ class ChunkRenderer:
 
     def _open_renderer(self, job: RenderJob, graph: Graph) -> Renderer:
         if self._renderer is None:
-            self._renderer = open_renderer(job, graph)
+            self._renderer = open_renderer(job, graph, stays_open=True)
         return self._renderer
 
     def _localize_job(self, job: RenderJob, paths: PathMap) -> RenderJob:

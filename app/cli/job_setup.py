@@ -25,8 +25,13 @@ def open_job_renderer(job: RenderJob, graph: Graph, prefetcher: Prefetcher | Non
     return renderer
 
 
-def open_renderer(job: RenderJob, graph: Graph, prefetcher: Prefetcher | None = None) -> Renderer:
-    """Open the device of a job. Raises DeviceError."""
+def open_renderer(
+    job: RenderJob, graph: Graph, prefetcher: Prefetcher | None = None, *, stays_open: bool = False
+) -> Renderer:
+    """Open the device of a job. Raises DeviceError.
+
+    If it `stays_open` for other jobs with the same pictures, it keeps them from one job to the next.
+    """
     from ..renderer import DEFAULT_BUDGET, Renderer, open_device, open_pinned
 
     device = (
@@ -35,7 +40,7 @@ def open_renderer(job: RenderJob, graph: Graph, prefetcher: Prefetcher | None = 
         else open_device(job.form, job.memory, sandbox=job.sandbox)
     )
     # Without pre-roll a frame needs the one before it at most; with pre-roll it needs more, so results are kept.
-    leads_up = len(job.frames) != 1 and graph.settings.preroll is not None
+    leads_up = stays_open or (len(job.frames) != 1 and graph.settings.preroll is not None)
     return Renderer(
         device, budget=DEFAULT_BUDGET if leads_up and not job.memory else 0, prefetcher=prefetcher, sandbox=job.sandbox
     )

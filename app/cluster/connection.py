@@ -7,7 +7,7 @@ import logging
 import os
 import re
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, cast
 
@@ -15,7 +15,7 @@ from ..errors import RenderError, UsageError
 from .worker_task import open_pool
 
 if TYPE_CHECKING:
-    from distributed import Client, LocalCluster
+    from distributed import Client, Future, LocalCluster
 
     from ..renderer.jobs.render_job import RenderJob
 
@@ -80,6 +80,13 @@ def find_dashboard(client: Client) -> str:
     from distributed import LocalCluster
 
     return "" if isinstance(client.cluster, LocalCluster) else str(client.dashboard_link or "")
+
+
+def iterate_finished(client: Client, futures: Sequence[Future[str]]) -> Iterator[Future[str]]:
+    """The futures of tasks as they end."""
+    from distributed import as_completed
+
+    return cast("Iterator[Future[str]]", iter(as_completed(futures, loop=client.loop)))
 
 
 @contextmanager

@@ -26,9 +26,7 @@ _OWN_MEMORY = 512 << 20
 
 def render_chunk(text: str) -> str:
     """Render a `FrameChunk` in a warm process beside this worker; a `ChunkReport`. Both are JSON."""
-    from distributed import get_worker
-
-    worker = get_worker()
+    worker = find_worker()
     try:
         chunk = FrameChunk.from_json(text)
     except UsageError as fault:
@@ -40,6 +38,13 @@ def render_chunk(text: str) -> str:
         report = process.render(chunk, reporter.report_frame, make_cancel_check(worker), limit)
     reporter.flush()
     return replace(report, worker=worker.address).to_json()
+
+
+def find_worker() -> Worker:
+    """The worker whose task runs on this thread."""
+    from distributed import get_worker
+
+    return get_worker()
 
 
 def read_version() -> str:

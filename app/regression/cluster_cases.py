@@ -12,8 +12,9 @@ from uuid import uuid4
 
 import msgspec
 
+from ..cluster.connection import iterate_finished
 from ..cluster.render_process import share_cores
-from ..cluster.worker_task import make_cancel_check, open_pool, read_memory_limit, read_version
+from ..cluster.worker_task import find_worker, make_cancel_check, open_pool, read_memory_limit, read_version
 from ..cluster.workers import WorkerRoster
 from ..errors import RenderError
 from .case_runner import RunOptions
@@ -22,7 +23,7 @@ from .parallel import run_in_worker
 from .results import CaseResult, Outcome
 
 if TYPE_CHECKING:
-    from distributed import Client
+    from ..cluster.connection import Client
 
 _TRIES = 3
 """How often a case may end its process: as often as a frame."""
@@ -32,8 +33,6 @@ def share_cases(
     client: Client, address: str, cases: Sequence[Case], options: RunOptions
 ) -> Generator[CaseResult, None, None]:
     """Run cases on the workers of a cluster; the results as they come. Raises RenderError if no worker can."""
-    from distributed import as_completed
-
     roster = WorkerRoster(wants_gpu=False)
     roster.update(cast("Mapping[str, Mapping[str, Any]]", client.scheduler_info(n_workers=-1)["workers"]))
     versions = client.run(read_version, on_error="return")
@@ -47,7 +46,7 @@ def share_cases(
     futures = client.map(run_suite_case, texts, key=names, pure=False, workers=places)
     cases_by_name = dict(zip(names, cases, strict=True))
     try:
-        for future in as_completed(futures, loop=client.loop):
+        for future in iterate_finished(client, futures):
             yield _read_result(cases_by_name[str(future.key)], future.result())
     finally:
         client.cancel(futures, force=True)
@@ -55,9 +54,7 @@ def share_cases(
 
 def run_suite_case(text: str) -> str:
     """Run one case in a warm process beside this worker. Text and result are JSON."""
-    from distributed import get_worker
-
-    worker = get_worker()
+    worker = find_worker()
     facts: Mapping[str, Any] = json.loads(text)
     kind = (bool(facts["options"]["deterministic"]), "cases", 0, str(facts["options"]["sandbox"]["root"]))
     death = ""

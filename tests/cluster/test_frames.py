@@ -104,7 +104,7 @@ def test_an_error_that_all_frames_have_is_that_of_one_process(halation, shot, fa
         (("--cluster", "farm"), "--cluster farm: write tcp://HOST:PORT of a Dask scheduler"),
         (("--cluster", "local:2", "-j", "2"), "--cluster and -j: give one of them"),
         (("--cluster", "local:2", "--map", "a=b"), "--map a=b: write --map FROM=TO with two absolute folders"),
-        (("--priority", "3"), "--map and --priority are for a cluster"),
+        (("--priority", "3"), "--map, --priority and --detach are for a cluster"),
     ],
 )
 def test_what_cannot_be_is_one_sentence(halation, words, sentence):
