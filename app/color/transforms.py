@@ -196,6 +196,9 @@ def apply_processor(processor: Any, rgb: Array) -> None:
     from concurrent.futures import ThreadPoolExecutor
 
     cores = min(available_cores(), rgb.shape[0])
+    if cores < 2:
+        processor.applyRGB(rgb)
+        return
     bands = [band for band in np.array_split(rgb, cores) if band.size]
     with ThreadPoolExecutor(cores) as pool:
         list(pool.map(processor.applyRGB, bands))

@@ -88,7 +88,7 @@ class Preview:
                 return
             request.outside_version = before.outside_version + (not before.has_same_outside(request))
             request.upstream = before.upstream
-            request.frame_cache = before.frame_cache if request.differs_only_in_frame(before) else request.frame_cache
+            request.frame_cache = before.frame_cache if request.has_same_frames(before) else request.frame_cache
         self._request, self._seen = request, graph
         if request.frame_cache not in self._caches:
             self._caches.append(request.frame_cache)

@@ -14,6 +14,7 @@ from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Port
 from ...renderer import RenderRequest
 from .frame_cache import FrameCache
+from .read_nodes import shows_same_pictures
 
 if TYPE_CHECKING:
     from ...inputs.provider import Binding
@@ -39,9 +40,14 @@ class PreviewRequest:
         """The request as the renderer takes it."""
         return RenderRequest(self.bindings, ports, self.size, self.scale, frame, region=region)
 
-    def differs_only_in_frame(self, before: PreviewRequest) -> bool:
-        """True if only the frame differs."""
-        return replace(self, frame=before.frame).wants_same_pixels(before)
+    def has_same_frames(self, before: PreviewRequest) -> bool:
+        """True if every frame shows the same: the graphs may differ in what nothing reads."""
+        return (
+            self.ports == before.ports
+            and self.scale == before.scale
+            and replace(self, frame=before.frame).has_same_outside(before)
+            and shows_same_pictures(before.graph, self.graph, self.ports.values())
+        )
 
     def wants_same_pixels(self, request: PreviewRequest) -> bool:
         """True if both requests give the same pixels; layout does not matter."""

@@ -44,6 +44,7 @@ _SIGNS = MappingProxyType(
 )
 
 
+@cache
 def chord(text: str) -> int:
     """The key chord that `text` names. Raises UsageError for an unknown key."""
     *modifiers, key = text.split("+")

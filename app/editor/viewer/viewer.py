@@ -41,6 +41,9 @@ if TYPE_CHECKING:
 
 TABLE_LINES = 7
 """The lines of the pixel table, always the same: otherwise the picture would move under the pointer."""
+READING = 0.2
+"""Seconds between two readings of values during playback."""
+
 _CATCH = (
     int(imgui.ButtonFlags_.mouse_button_left)
     | int(imgui.ButtonFlags_.mouse_button_middle)
@@ -75,6 +78,9 @@ class Viewer:
         self._hand = ViewerInput(context)
         self._reader = ValueReader()
         self._scan = Scan()
+        self._values: dict[str, tuple[float, ...]] = {}
+        """The values under the pointer that were read last."""
+        self._next_reading = 0.0
         self._finder = InvalidPixelSearch(context)
         self._watch = PictureTimer()
         self._seconds = 0.0
@@ -269,18 +275,22 @@ class Viewer:
         """Draw the values under the pointer below the picture.
 
         The search for invalid pixels runs only while nothing is computed or dragged, because it reads back the whole
-        picture, part by part.
+        picture, part by part. During playback both read five times a second: each waits for the device (13 ms).
         """
-        viewer = self._context.viewer
-        mouse = imgui.get_mouse_pos()
-        under = self._find_hovered_sight(sight).under((mouse.x, mouse.y))
+        viewer, time_now, mouse = self._context.viewer, imgui.get_time(), imgui.get_mouse_pos()
+        under, before = self._find_hovered_sight(sight).under((mouse.x, mouse.y)), viewer.pixel
         viewer.pixel = under if viewer.hovered and images.a is not None else None
+        is_used = viewer.pixel != before or viewer.copying or bool(viewer.picking)
+        is_due = is_used or not self._context.preview.skims or time_now >= self._next_reading
+        self._next_reading = time_now + READING if is_due else self._next_reading
         for name, image in ((A, images.a), (B, images.b)):
             if name == B and image is None:
                 continue
             values: tuple[float, ...] = ()
             if image is not None and viewer.pixel is not None:
-                values = self._reader.read_pixel(self._context.probe, name, image, viewer.pixel)
+                if is_due:
+                    self._values[name] = self._reader.read_pixel(self._context.probe, name, image, viewer.pixel)
+                values = self._values.get(name, ())
             words = infobar.about(self._context, name, image, sight, self._seconds)
             if image is not None:
                 words += infobar.of_pixel(self._context, viewer.pixel, values, image.kind, look)
@@ -290,6 +300,7 @@ class Viewer:
         viewer.copying = False
         if (
             images.a is not None
+            and is_due
             and not self._context.preview.busy
             and viewer.warn_nonfinite
             and not self._context.interface.dragging

@@ -100,6 +100,34 @@ def find_picture_boxes(commands: Array, rows: Array, textures: Collection[int]) 
     ]
 
 
+def find_cover(rows: Array, box: Box) -> int | None:
+    """The last row from which on nothing below can be seen in a box: an opaque rectangle of one color covers it.
+
+    Panels lie on backgrounds that lie on each other: four layers, each as large as the panel, and three are in vain.
+    """
+    if len(rows) < 2:
+        return None
+    corners = np.ascontiguousarray(rows[:, :_CLIP]).reshape(-1, 3, VERTEX)
+    is_solid = (rows[:, _TEXTURE : _TEXTURE + 2] != 0).any(1) & (corners[..., 4] >> 24 == 255).all(1)
+    is_solid &= (corners[:, 1:, 2:] == corners[:, :1, 2:]).all((1, 2))
+    starts = np.flatnonzero(is_solid[:-1] & is_solid[1:])
+    starts = starts[_are_rectangles(corners[starts, :, :2], corners[starts + 1, :, :2])]
+    if not len(starts):
+        return None
+    boxes = find_boxes(rows[starts])
+    covers = (boxes[:, :2] <= box[:2]).all(1) & (boxes[:, 2:] >= box[2:]).all(1)
+    return int(starts[covers][-1]) if covers.any() else None
+
+
+def _are_rectangles(first: Array, second: Array) -> Array:
+    """Whether pairs of triangles (a, b, c), (a, c, d) are rectangles along the axes."""
+    a, b, c = np.moveaxis(np.ascontiguousarray(first).view(np.float32), 1, 0)
+    a2, c2, d = np.moveaxis(np.ascontiguousarray(second).view(np.float32), 1, 0)
+    is_split = (a == a2).all(1) & (c == c2).all(1)
+    x, y = (a[:, 0], c[:, 0]), (a[:, 1], c[:, 1])
+    return is_split & (b[:, 0] == x[1]) & (b[:, 1] == y[0]) & (d[:, 0] == x[0]) & (d[:, 1] == y[1])
+
+
 def surround_rows(rows: Array) -> list[Box]:
     """The box of all rows, or none if they draw nothing."""
     return _surround(rows)

@@ -19,18 +19,28 @@ class _Menu:
     entries: dict[str, ListedAction | _Menu] = field(default_factory=dict)
 
 
-def draw_menus(context: ActionSurface, panels: dict[PanelTitle, bool]) -> None:
-    """Draw all menus; `panels` says by title which are visible, and is changed by the View menu."""
-    for name, menu in arrange_menus(context.actions.all).items():
-        if imgui.begin_menu(name):
-            draw_menu(context, menu)
-            if name == "View":
-                imgui.separator()
-                for title, visible in panels.items():
-                    clicked, _ = imgui.menu_item(title, "", visible)
-                    if clicked:
-                        panels[title] = not visible
-            imgui.end_menu()
+class MenuBar:
+    """The menus, arranged once for each table of actions."""
+
+    def __init__(self) -> None:
+        self._actions: tuple[ListedAction, ...] | None = None
+        self._menus: dict[str, _Menu] = {}
+
+    def draw(self, context: ActionSurface, panels: dict[PanelTitle, bool]) -> None:
+        """Draw all menus; `panels` says by title which are visible, and is changed by the View menu."""
+        if self._actions is not context.actions.all:
+            self._actions = context.actions.all
+            self._menus = arrange_menus(self._actions)
+        for name, menu in self._menus.items():
+            if imgui.begin_menu(name):
+                draw_menu(context, menu)
+                if name == "View":
+                    imgui.separator()
+                    for title, visible in panels.items():
+                        clicked, _ = imgui.menu_item(title, "", visible)
+                        if clicked:
+                            panels[title] = not visible
+                imgui.end_menu()
 
 
 def arrange_menus(actions: tuple[ListedAction, ...]) -> dict[str, _Menu]:

@@ -25,6 +25,7 @@ from .damage import (
     Array,
     Box,
     find_changed_boxes,
+    find_cover,
     find_picture_boxes,
     make_rows,
     merge_boxes,
@@ -127,16 +128,35 @@ class WindowPainter:
 
     def _paint_box(self, picture: imgui.ImDrawData, box: Box) -> None:
         """Draw what lies in a box. Commands that are clipped to nothing cost nothing."""
-        left, top, right, bottom = box
-        self._device.clear_window((left, self._size[1] - bottom, right - left, bottom - top))
-        clips = [_view_clips(lines) for lines in picture.cmd_lists]
-        originals = [clip.copy() for clip in clips]
-        for clip, original in zip(clips, originals, strict=True):
-            np.maximum(original[:, :2], box[:2], out=clip[:, :2])
-            np.minimum(original[:, 2:], box[2:], out=clip[:, 2:])
+        tables = [_view_commands(lines) for lines in picture.cmd_lists]
+        originals = [table.copy() for table in tables]
+        if not self._skip_covered(tables, box):
+            left, top, right, bottom = box
+            self._device.clear_window((left, self._size[1] - bottom, right - left, bottom - top))
+        for table in tables:
+            clips = table["clip"]
+            np.maximum(clips[:, :2], box[:2], out=clips[:, :2])
+            np.minimum(clips[:, 2:], box[2:], out=clips[:, 2:])
         imgui.backends.opengl3_render_draw_data(picture)
-        for clip, original in zip(clips, originals, strict=True):
-            clip[:] = original
+        for table, original in zip(tables, originals, strict=True):
+            table[:] = original
+
+    def _skip_covered(self, tables: Sequence[Array], box: Box) -> bool:
+        """Take out of the commands what something opaque covers in a box; False if nothing covers all of it."""
+        for number in reversed(range(len(tables))):
+            row = find_cover(self._lists[number].rows, box)
+            if row is None:
+                continue
+            for table in tables[:number]:
+                table["count"] = 0
+            left = 3 * row
+            for command in tables[number]:
+                skipped = min(left, int(command["count"]))
+                command["first_index"] += skipped
+                command["count"] -= skipped
+                left -= skipped
+            return True
+        return False
 
     def _has_known_memory(self, picture: imgui.ImDrawData) -> bool:
         """True if lists lie in memory as we read them, which is looked at once: it belongs to the library's version."""
@@ -185,14 +205,14 @@ def _copy_bytes(vector: Any, width: int) -> bytes:
     return ctypes.string_at(vector.data_address(), count * width) if count else b""
 
 
-def _view_clips(lines: imgui.ImDrawList) -> Array:
-    """The rectangles to which the commands of a list are clipped, in place: float [n, 4]."""
+def _view_commands(lines: imgui.ImDrawList) -> Array:
+    """The commands of a list in place: what is changed here is drawn so."""
     commands = lines.cmd_buffer
     count = commands.size()
     if not count:
-        return np.empty((0, 4), np.float32)
+        return np.empty(0, COMMAND)
     memory = (ctypes.c_uint8 * (count * COMMAND.itemsize)).from_address(commands.data_address())
-    return np.ctypeslib.as_array(memory).view(COMMAND)["clip"]
+    return np.ctypeslib.as_array(memory).view(COMMAND)
 
 
 def _has_known_layout(lines: imgui.ImDrawList) -> bool:

@@ -30,7 +30,7 @@ from .full_screen import FullScreen, begin_filling, find_pointed_panel
 from .guard import draw_failure, draw_guarded, enable_error_recovery
 from .input_events import InputQueue
 from .layouts import LAYOUTS, apply_layout, make_splits
-from .menus import draw_menus
+from .menus import MenuBar
 from .painting import WindowPainter
 from .panels import DOCKED, OVERLAYS, Docked, Panel
 from .resting import GRACE, FrameWaker, choose_idle_rate
@@ -89,6 +89,7 @@ class Window:
         self._styled: tuple[Palette, float, tuple[float, ...]] | None = None
         self._layout = LAYOUTS["composite"]
         self.params = self._make_params(version, size)
+        self._menu_bar = MenuBar()
         self._full_screen = FullScreen(self.params)
         self.frames = 0
         self.fault: Exception | None = None
@@ -227,7 +228,7 @@ class Window:
     def _draw_menus(self) -> None:
         windows = {docked.title: self.params.docking_params.dockable_window_of_name(docked.title) for docked in DOCKED}
         visible = {title: window.is_visible for title, window in windows.items()}
-        draw_guarded(self.editor, "Menus", lambda: draw_menus(self._contexts.dialogs, visible))
+        draw_guarded(self.editor, "Menus", lambda: self._menu_bar.draw(self._contexts.dialogs, visible))
         for title, is_shown in visible.items():
             windows[title].is_visible = is_shown
 

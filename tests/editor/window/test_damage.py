@@ -4,7 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from halation.editor.window.damage import COMMAND, find_changed_boxes, find_picture_boxes, make_rows, merge_boxes
+from halation.editor.window.damage import (
+    COMMAND,
+    find_changed_boxes,
+    find_cover,
+    find_picture_boxes,
+    make_rows,
+    merge_boxes,
+)
 
 SIZE = (64, 48)
 
@@ -96,3 +103,24 @@ def test_far_boxes_stay_apart() -> None:
     assert merge_boxes([near, far], (1920, 1080)) == [near, far]
     assert merge_boxes([near, (40, 40, 80, 80)], (1920, 1080)) == [(10, 10, 80, 80)]
     assert merge_boxes([(-5, -5, 0, 0), (1900, 1000, 2000, 1200)], (1920, 1080)) == [(1900, 1000, 1920, 1080)]
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_nothing_below_a_cover_is_seen(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    rects = [choose(random) for _ in range(30)]
+    for place in (5, 12):  # opaque ones among others that let something through, some of them clipped
+        rects.insert(place, (0, 0, 50, 44, 0xFF000000 + place))
+    rects.insert(20, (0, 0, 60, 48, 0x7F000000))
+    clips = [(0, 0, 64, 48), (int(random.integers(0, 12)), 0, 64, 48)]
+    rows = make_list(rects, clips)[1]
+    rows[:, 19] = 1  # the texture of the interface itself, which is opaque where rectangles read it
+    box = (10, 6, 30, 20)
+    cover = find_cover(rows, box)
+    assert cover is not None and cover % 2 == 0
+    part = np.s_[box[1] : box[3], box[0] : box[2]]
+    left = [rect if number >= cover // 2 else (0, 0, 0, 0, 0) for number, rect in enumerate(rects)]
+    assert (draw(rects, clips)[part] == draw(left, clips)[part]).all()
+    assert find_cover(rows, (0, 0, 64, 48)) is None
+    rows[:, 19] = 0  # pictures may let through what is below
+    assert find_cover(rows, box) is None
