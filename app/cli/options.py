@@ -153,8 +153,8 @@ def add_root(command: Callable[..., int]) -> Callable[..., int]:
     parameters = [parameter for name, parameter in signature.parameters.items() if name != "sandbox"]
     root_parameter = inspect.Parameter("root", inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Root)
     run.__signature__ = signature.replace(parameters=[*parameters, root_parameter])  # type: ignore[attr-defined]
-    run.__annotations__ = {**command.__annotations__, "root": Root}
-    del run.__annotations__["sandbox"]
+    annotations = {parameter.name: parameter.annotation for parameter in parameters}  # typer need not compile them too
+    run.__annotations__ = {**annotations, "root": Root, "return": int}
     return run
 
 

@@ -1,7 +1,5 @@
 """`halation render`: renders a graph to files."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING, Annotated
 
 import typer

@@ -1,7 +1,5 @@
 """The objects of a document: the fields that each may have, and sentences about wrong ones."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from typing import Annotated, Any, TypeVar

@@ -1,7 +1,5 @@
 """Light groups as named items: how bright, and in which color, each group of lights of a render shines."""
 
-from __future__ import annotations
-
 from typing import Annotated, get_type_hints
 
 from msgspec import Struct

@@ -1,7 +1,5 @@
 """Lights as named items: the kinds of light, and their fields."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 from enum import StrEnum

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import builtins
 import copy
 import dataclasses
 import re
+import sys
 from collections.abc import Mapping
+from types import SimpleNamespace
 from typing import Annotated, Any, ClassVar, Self, dataclass_transform, get_type_hints
 
 from .camera import CameraModel
@@ -19,6 +22,24 @@ from .values import Doc, Missing, Value, read_value
 
 def _fields(cls: Any) -> tuple[dataclasses.Field[Any], ...]:
     return dataclasses.fields(cls)
+
+
+def _evaluate_annotations(cls: type[Node]) -> dict[str, Any]:
+    """The annotations of a class and its bases as objects, but for class variables, which are no values.
+
+    `get_type_hints(cls)` would compile the text of each annotation of `Node` again for each of its subclasses, which
+    takes longer than all else about a declaration.
+    """
+    annotations: dict[str, Any] = {}
+    for base in reversed(cls.__mro__):
+        texts = {} if base in (object, Node) else vars(base).get("__annotations__", {})
+        values = {
+            name: text for name, text in texts.items() if not str(text).startswith(("ClassVar", "typing.ClassVar"))
+        }
+        module = vars(sys.modules.get(base.__module__, builtins))
+        names = dict(vars(base))
+        annotations |= get_type_hints(SimpleNamespace(__annotations__=values), names, module, include_extras=True)
+    return annotations
 
 
 def _namespace(module: str) -> str:
@@ -102,9 +123,9 @@ class Node:
             if output.follows and not isinstance(cls.inputs.get(output.follows), Image):
                 raise TypeError(f"output '{output.name}': it follows '{output.follows}', which is no Image input")
         cls.outputs = outputs
-        hints = get_type_hints(cls, include_extras=True)
+        annotations = _evaluate_annotations(cls)
         cls.values = {
-            field.name: read_value(field.name, hints[field.name], field.default)
+            field.name: read_value(field.name, annotations[field.name], field.default)
             for field in sorted(_fields(cls), key=lambda field: field.name not in own_names)
             if field.name != "length_units"
         }

@@ -1,7 +1,5 @@
 """Outlines of a rotoscope as named items: closed splines, how each is combined with those before it, and its edge."""
 
-from __future__ import annotations
-
 import math
 from enum import StrEnum
 from typing import Annotated, Literal, get_type_hints
