@@ -7,6 +7,7 @@ import json
 import textwrap
 from collections.abc import Callable, Iterator
 from enum import Enum
+from types import UnionType
 from typing import Any, Literal, get_args, get_origin
 
 import halation as hal
@@ -115,9 +116,9 @@ def _write_default(default: object) -> str:
 def _write_type(annotation: Any) -> str:
     if get_origin(annotation) is Literal:
         return f"Literal[{', '.join(map(repr, get_args(annotation)))}]"
-    if get_origin(annotation) is tuple:
+    if isinstance(origin := get_origin(annotation), type) and get_args(annotation) and origin is not UnionType:
         parts = ("..." if part is ... else _write_type(part) for part in get_args(annotation))
-        return f"tuple[{', '.join(parts)}]"
+        return f"{origin.__name__}[{', '.join(parts)}]"
     text = annotation if isinstance(annotation, str) else getattr(annotation, "__name__", str(annotation))
     return text.replace("Self", "Graph")
 

@@ -32,7 +32,7 @@ def _evaluate_annotations(cls: type[Node]) -> dict[str, Any]:
     """
     annotations: dict[str, Any] = {}
     for base in reversed(cls.__mro__):
-        texts = {} if base in (object, Node) else vars(base).get("__annotations__", {})
+        texts: dict[str, Any] = {} if base in (object, Node) else vars(base).get("__annotations__", {})
         values = {
             name: text for name, text in texts.items() if not str(text).startswith(("ClassVar", "typing.ClassVar"))
         }
