@@ -44,6 +44,9 @@ _SHORT = 1.5
 _LONG = 64.0
 """The longest segment in pixels: a slanted one then lies in few tiles that it does not cross."""
 
+_LOOSE = 0.02
+"""How far in pixels a point may lie from a chord that stands for it: what lies between is at most 0.06 away."""
+
 _MOST_SEGMENTS = 512
 """The most segments of a curve: as many as a quarter of a circle needs that is 3000 pixels high."""
 
@@ -306,11 +309,25 @@ def _cover_layers(draw: Draw, cover: Drawn, layers: list[list[_Letter]]) -> Draw
     return draw_coverage(draw, cover, fills, *tables)
 
 
+def _thin_out(polygon: list[Point]) -> list[Point]:
+    """The points of a polygon without those that lie almost on the line to the next one that stays."""
+    corners = [polygon[0]]
+    for before, point, after in zip(polygon, polygon[1:], (*polygon[2:], polygon[0]), strict=False):
+        (x, y), (a, b) = corners[-1], after
+        across, down = a - x, b - y
+        away = abs(across * (point[1] - y) - down * (point[0] - x))
+        near = math.dist(before, corners[-1]) + math.dist(point, before)
+        if away > _LOOSE * math.hypot(across, down) or near > _LONG:
+            corners.append(point)
+    return corners
+
+
 def _draw_stroke(draw: Draw, cover: Drawn, letters: list[_Letter], width: float) -> Drawn:
     """The letters grown by a width, as a function of the distance to their outlines."""
     chords = list[float]()
     for polygon in chain.from_iterable(letter.polygons for letter in letters):
-        for start, end in pairwise((*polygon, polygon[0])):
+        corners = _thin_out(polygon)
+        for start, end in pairwise((*corners, corners[0])):
             chords += (*start, *end, 0.0, 0.0, 0.0, 0.0)
     if not chords:
         return cover
