@@ -103,7 +103,7 @@ def _document(graph: Graph) -> Section:
 
 
 def _graph(graph: Graph) -> Section:
-    """A body, without empty sections."""
+    """A body, without empty sections. The large ones are written only when they are read: see `LazySection`."""
     extra = graph.extra
 
     def entries(section: str, sections: Mapping[str, Section]) -> Section:
