@@ -148,7 +148,7 @@ FAULTY = {
     "a name of GLSL": (
         CLASS,
         "float acme_glow_sum(float half) { return half; }\n" + SHADER.replace("BODY", "image"),
-        "line 1: the parameter 'half' has a name that GLSL reserves: choose another one",
+        "line 1: the parameter 'half' has a name that GLSL or the pass reserves: choose another",
     ),
 }
 
