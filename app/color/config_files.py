@@ -15,7 +15,6 @@ from functools import cache
 from io import BytesIO
 from pathlib import Path
 from typing import Any
-from zipfile import BadZipFile, ZipFile
 
 from ..errors import InputError
 from ..resources.input_files import check_file, fingerprint, open_file, read_bytes
@@ -79,6 +78,8 @@ def _check_length(source: str, text: str) -> None:
 
 def _check_archive(source: str, content: bytes) -> None:
     """Raise InputError for an archive with a config or a table that OpenColorIO would read for ever."""
+    from zipfile import BadZipFile, ZipFile  # slow to import, and few configs are archives
+
     try:
         with ZipFile(BytesIO(content)) as archive:
             for entry in archive.infolist():
