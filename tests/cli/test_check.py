@@ -211,6 +211,18 @@ def test_damage_that_git_does(cli, tidy, tmp_path):
     assert lines(result) == [(path.name, line_of(path, "shot.exr"), "error", "lfs-pointer")] and result.code == 4
 
 
+def test_what_lies_outside_of_the_root_is_not_looked_into(cli, graphs, tmp_path):
+    """Whether a file there is a pointer of git LFS must not show."""
+    (tmp_path / "root").mkdir()
+    outside = tmp_path / "secret.exr"
+    path = graphs("root/graph.json", inputs={"beauty": {"type": "Image", "file": "../secret.exr"}})
+    sentences: list[str] = []
+    for text in ("version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n", "no pointer", ""):
+        outside.write_text(text)
+        sentences.append(cli("check", path, "--root", path.parent).out)
+    assert len({*sentences}) == 1 and "lies outside of" in sentences[0] and "lfs" not in sentences[0]
+
+
 def test_paths_that_a_clone_does_not_have(cli, tidy, shot, tmp_path):
     repository = tmp_path / "repository"
     (repository / ".git").mkdir(parents=True)
