@@ -8,6 +8,7 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -41,8 +42,7 @@ class Farm:
 
     def start_worker(self, *words: str, **variables: str) -> int:
         """Start a worker with one thread in a folder of its own."""
-        folder = self.folder / f"worker{len(self.workers)}"
-        folder.mkdir()
+        folder = Path(tempfile.mkdtemp(prefix="worker", dir=self.folder))
         command = ["worker", self.address, "--nthreads", "1", "--no-dashboard", "--local-directory", str(folder)]
         self.workers.append(start_dask([*command, *words], folder, {"LP_NUM_THREADS": "1", **variables}))
         return self.workers[-1]
