@@ -11,7 +11,9 @@ const int PATH_TILE = 16, PATH_SEGMENTS = 8, PATH_BITS = 24, PATH_BLOCK = 16;
 const float PATH_RADIUS = 11.314;  // from the middle of a tile to its corners
 const float PATH_FAR = 1e18;
 
+// Where a span, or a channel of spans, is in its table.
 ivec2 path_cell(int number) { return ivec2(number % PATH_BLOCK, number / PATH_BLOCK); }
+// Where a point of a span is in the table of points.
 ivec2 path_point_cell(int span, int number) {
     return ivec2(PATH_SEGMENTS * (span % PATH_BLOCK) + number, span / PATH_BLOCK);
 }
@@ -88,6 +90,7 @@ vec4 path_words(int rows, int channels) {
     return result;
 }
 
+// The spans of a channel that matter in a tile: a bit for each.
 uint path_bits(ivec2 tile, int channel, int rows) {
     int texel = channel >> 2;
     return uint(words_at(ivec2(4 * tile.x + (texel & 3), rows * tile.y + (texel >> 2)))[channel & 3]);
@@ -118,6 +121,7 @@ struct PathPart {
     float rise, start, end;
 };
 
+// The part of a segment from a to b in a row.
 PathPart path_part(vec2 a, vec2 b, float row) {
     float low = clamp(a.y, row, row + 1.0), high = clamp(b.y, row, row + 1.0);
     float slope = a.y == b.y ? 0.0 : (b.x - a.x) / (b.y - a.y);
@@ -200,6 +204,7 @@ float path_combine(float below, float cover, int mode, float opacity, bool inver
     return below * (1.0 - opacity * (mode == 1 ? cover : 1.0 - cover));
 }
 
+// A mask with one more shape, by its mode and opacity in the table of shapes.
 float path_add(float below, float cover, int number) {
     vec4 facts = shapes_at(ivec2(1, number));
     return path_combine(below, cover, int(shapes_at(ivec2(0, number)).w), facts.x, facts.y > 0.5);
@@ -237,6 +242,7 @@ vec4 path_level(int groups, int count) {
     return vec4(ends.y - ends.x, ends.x, 0.0, 0.0);
 }
 
+// The mask with the coverage of all shapes in a pixel; tiles that no edge crosses have one level.
 float path_cover(int rows, int groups, int count, int segments) {
     ivec2 tile = pixel / PATH_TILE;
     float covered = mask_at(pixel);
@@ -247,10 +253,12 @@ float path_cover(int rows, int groups, int count, int segments) {
     return covered;
 }
 
+// The mask where there is no shape.
 float path_nothing() { return 0.0; }
 
 // --- soft edges ----------------------------------------------------------------------------------------------------
 
+// Where a texel of a chord is in the table of chords.
 ivec2 path_chord_cell(int chord, int texel) { return ivec2(2 * (chord % PATH_BLOCK) + texel, chord / PATH_BLOCK); }
 
 // The square of the distance to a chord, and where along it the nearest place is.
@@ -272,6 +280,7 @@ vec4 path_chord_hulls(int chord_count) {
     return hull;
 }
 
+// The middle of a tile, in pixels.
 vec2 path_middle(ivec2 tile) { return (vec2(tile) + 0.5) * float(PATH_TILE); }
 
 // The distance from the middle of a tile to the nearest chord.
