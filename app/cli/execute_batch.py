@@ -169,15 +169,9 @@ def _split_entries(job: RenderJob, is_watched: bool) -> list[RenderJob]:
 
 def _join_batch_reports(reports: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """One report from those of several processes. Each has textures of its own, so their bytes are added."""
-    total = dict(reports[0])
-    for report in reports[1:]:
-        for name in ("passes", "programs", "peak_bytes"):
-            total[name] += report[name]
-        for name in ("repaired", "warnings", "views"):
-            total[name] = {**total[name], **report[name]}
-        total["data"] = list(dict.fromkeys([*total["data"], *report["data"]]))
-        total["seconds"] = {name: max(seconds, report["seconds"][name]) for name, seconds in total["seconds"].items()}
-    return total
+    from .helpers import join_costs
+
+    return {**join_costs(reports), "data": list(dict.fromkeys(name for report in reports for name in report["data"]))}
 
 
 def _print_batch_report(report: Mapping[str, Any], counts: BatchReporter, seconds: float, as_json: bool) -> None:
