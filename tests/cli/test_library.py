@@ -84,10 +84,10 @@ def test_shared_folders(monkeypatch, own: Path, tmp_path: Path) -> None:
 
 
 def test_tags_and_names_are_searched(own: Path) -> None:
-    save_bloom(own / "warm_glow.json", About("", ("sodium vapour", "evening")))
+    save_bloom(own / "vesper_glow.json", About("", ("sodium vapour", "evening")))
     entries = preset_entries(PresetLibrary().list_presets())
-    for words in ("warm", "sodium", "vapour", "evening"):
-        assert rank_entries(entries, words)[0].title == "warm glow", words
+    for words in ("vesper", "sodium", "vapour", "evening"):
+        assert rank_entries(entries, words)[0].title == "vesper glow", words
 
 
 @pytest.mark.parametrize("text", ["{", "[]", '{"halation": null}', "{}", '{"halation": 1, "ui": 3}', "\udcff"])
