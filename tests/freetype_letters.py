@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from ctypes import POINTER, byref, c_ubyte, cast
+from ctypes import POINTER, Structure, byref, c_ubyte, cast
 from pathlib import Path
 
 import freetype
 import numpy as np
 from freetype import raw
+from freetype.ft_enums.ft_load_flags import FT_LOAD_FLAGS
+from freetype.ft_enums.ft_pixel_modes import FT_PIXEL_MODES
 
 SCALE = 32
 
@@ -24,7 +26,7 @@ def draw_letters(
     width, height = size[0] * SCALE, size[1] * SCALE
     cover = np.zeros((size[1], size[0]), np.float64)
     for number, x, y in glyphs:
-        face.load_glyph(number, freetype.FT_LOAD_NO_SCALE)
+        face.load_glyph(number, FT_LOAD_FLAGS["FT_LOAD_NO_SCALE"])
         outline = face.glyph.outline._FT_Outline
         if not outline.n_points:
             continue
@@ -38,11 +40,11 @@ def draw_letters(
     return cover
 
 
-def _fill(outline: object, width: int, height: int) -> np.ndarray:
+def _fill(outline: Structure, width: int, height: int) -> np.ndarray:
     pixels = np.zeros((height, width), np.uint8)
     bitmap = raw.FT_Bitmap()
     bitmap.rows, bitmap.width, bitmap.pitch = height, width, width
-    bitmap.num_grays, bitmap.pixel_mode = 256, raw.FT_PIXEL_MODE_GRAY
+    bitmap.num_grays, bitmap.pixel_mode = 256, FT_PIXEL_MODES["FT_PIXEL_MODE_GRAY"]
     bitmap.buffer = cast(pixels.ctypes.data, POINTER(c_ubyte))
     assert raw.FT_Outline_Get_Bitmap(freetype.get_handle(), byref(outline), byref(bitmap)) == 0
     return pixels / 255.0

@@ -19,7 +19,6 @@ import subprocess
 import sys
 import tempfile
 import time
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -34,10 +33,10 @@ from halation import document
 from halation.authoring.commands import ArrangeElements
 from halation.authoring.preview import Preview, VisibleRegion
 from halation.editor.window.panels import DOCKED
-from halation.graph import Graph, Output, Port
-from halation.nodes import Kind, catalogue
+from halation.graph import Graph, Port
 from halation.renderer import Display, Renderer
 from imgui_bundle import ImVec2, immapp
+from node_chains import make_chain
 
 _TEN = (
     "exposure",
@@ -64,24 +63,6 @@ _CAST = (
     "edge_detect",
     "mix_images",
 )
-
-
-def make_chain(types: list[str], size: tuple[int, int]) -> Graph:
-    """A noise, then one node after the other, then the output."""
-    types_by_name = catalogue()
-    graph = Graph().add("noise", types_by_name["noise"]())
-    source = Port("noise", "out")
-    for number, name in enumerate(types):
-        id = f"n{number}"
-        graph = graph.add(id, types_by_name[name]())
-        first = next(iter(types_by_name[name].inputs))
-        graph = graph.connect(source, Port(id, first))
-        source = Port(id, next(iter(types_by_name[name].outputs)))
-    graph = graph.add_output("image", Output(Kind.IMAGE)).connect(source, Port("outputs", "image"))
-
-    from halation.graph import Settings
-
-    return replace(graph, settings=Settings(size))
 
 
 def measure_frame(folder: Path) -> dict[str, float]:

@@ -29,11 +29,8 @@ from halation import document
 from halation.graph import Expression, Graph, Output, Port, Settings
 from halation.nodes import Kind, catalogue
 from halation.resources.sandbox import UNRESTRICTED
+from node_chains import make_chain
 from pointer import MIDDLE, Pointer
-
-sys.path.append(str(Path(__file__).parents[1]))
-
-from editor import make_chain
 
 SIZE = (1920, 1080)
 BIG = (12_000, 8_000)
@@ -236,7 +233,7 @@ def make_picture() -> Path:
     spec.attribute("compression", "zip")
     file, random = oiio.ImageOutput.create(str(path)), np.random.default_rng(1)
     partial = path.with_suffix(".part.exr")
-    assert file.open(str(partial), spec)
+    assert file is not None and file.open(str(partial), spec)
     ramp = np.linspace(0.0, 1.0, BIG[0], dtype=np.float32)[None, :, None]
     for top in range(0, BIG[1], 16):
         rows = ramp * (0.2 + top / BIG[1]) + random.random((16, BIG[0], 1), np.float32) * 0.02

@@ -226,9 +226,9 @@ def list_rows() -> Iterator[Row]:
     points = [[0.5, 0.001 * (number % 997), 0, 0, 0, 0, 0] for number in range(100_000)]
     yield "roto", {}, _make_items("roto", "shapes", {"a": {"kind": "spline", "points": points}})
     yield "roto of one place", {}, _make_items("roto", "shapes", {"a": {"kind": "spline", "points": [[0] * 7] * 9000}})
-    lights = {f"l{number}": {"kind": "point"} for number in range(10_000)}
+    lights: Tree = {f"l{number}": {"kind": "point"} for number in range(10_000)}
     yield "lights", {}, _make_items("deferred_lighting", "lights", lights)
-    groups = {f"g{number}": {"kind": "group"} for number in range(5000)}
+    groups: Tree = {f"g{number}": {"kind": "group"} for number in range(5000)}
     yield "light groups", {}, _make_items("light_groups", "groups", groups)
 
 
