@@ -10,7 +10,6 @@ import sys
 from io import TextIOWrapper
 from typing import Literal, TextIO
 
-from ..resources.library_preload import preload_libraries
 from ..resources.machine import has_memory_limit
 from .signals import raise_on_requests
 
@@ -25,7 +24,7 @@ def main() -> None:
 
     File names may hold bytes that are not valid text, so printing escapes them. Matrices are small here, and the
     threads that numpy starts for large ones would cost time. Each thread takes address space, and libraries wait for
-    ever where a limit (`ulimit -v`) leaves none for theirs. `render` will need OpenImageIO, whatever its options are.
+    ever where a limit (`ulimit -v`) leaves none for theirs.
     """
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     if has_memory_limit():
@@ -36,8 +35,6 @@ def main() -> None:
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
     raise_on_requests()
-    if sys.argv[1:2] == ["render"] and "--help" not in sys.argv and not has_memory_limit():
-        preload_libraries()
     try:
         from .program import run_process
 

@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from ..errors import UsageError
-from ..resources.library_preload import wait_for_libraries
 from . import parsing
 from .execute_batch import check_first_entry, execute_batch
 from .job_setup import (
@@ -54,7 +53,6 @@ def execute(job: RenderJob, progress: Literal["bar", "json"], as_json: bool) -> 
     if job.processes > 1 and job.videos and not job.entries:
         print_note(f"one process renders all frames, since all are in {job.videos[0]}")
         job = replace(job, processes=1)
-    wait_for_libraries()
     execute_opened = execute_batch if job.entries else _execute_opened
     if job.processes == 1 and needs_watchdog(graph) and can_fork():
         return run_forked(
