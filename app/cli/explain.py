@@ -91,12 +91,12 @@ def explain(
         parsing.parse_scale(scale),
         frame if frame is not None else provider.find_frames(opened_graph, bindings)[0],
     )
-    target = replace(_choose_target(form_or_device, sandbox), memory=memory_limit)
     if html is not None:
         wanted_form = form_or_device if form and form_or_device != "device" else None
         order = _PageOrder(html, opened_graph, bindings, wanted_form, memory_limit, parsed_precision)
         _write_page(order, request, sandbox)
         return 0
+    target = replace(_choose_target(form_or_device, sandbox), memory=memory_limit)
     # Planned as for one EXR file per output.
     request = replace(request, by_rows=frozenset(request.targets or opened_graph.outputs))
     plan = compiler.compile_graph(opened_graph, request, provider, target=target, precision=parsed_precision)

@@ -20,6 +20,7 @@ from pygments.lexers.graphics import GLShaderLexer
 from ..compiler import Pass, Plan, Shader, Surface
 from ..compiler.explain import describe_frames, format_bytes
 from ..media.pictures.stored import Array, StoredPart, encode_for_viewing, encode_png
+from ..media.pictures.thumbnail import shrink_to_fit
 from ..renderer import PassTrace
 from ..version import VERSION
 from .shipped_files import read_shipped_text
@@ -137,21 +138,14 @@ class PassesPage(Struct):
 
 def make_thumbnail(array: Array, surface: Surface, view: str) -> Thumbnail:
     """A small PNG of the pixels of a surface: light through a view, data from its least number to its largest."""
-    step = max(1, -(-array.shape[1] // WIDTH))
     if not surface.is_data and surface.channels == 4:
-        small = _average_blocks(array, step)
+        small = shrink_to_fit(array, WIDTH, WIDTH)
         return Thumbnail(encode_png(encode_for_viewing(StoredPart(small, ("R", "G", "B", "A"), False), view)), None)
+    step = max(1, -(-array.shape[1] // WIDTH))
     small = np.ascontiguousarray(array[::step, ::step], np.float32)  # a mean of data lies on no surface
     finite = small[np.isfinite(small)]
     span = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
     return Thumbnail(encode_png(encode_for_viewing(StoredPart(small, ("data",), False), "", span)), span)
-
-
-def _average_blocks(array: Array, step: int) -> Array:
-    """The means of blocks of `step` pixels on each side. Rows and columns that fill no block are left out."""
-    height, width, channels = max(1, array.shape[0] // step), array.shape[1] // step, array.shape[2]
-    blocks = array[: height * step, : width * step].astype(np.float32)
-    return blocks.reshape(height, -1, width, step, channels).mean((1, 3), dtype=np.float32)
 
 
 def _describe_numbers(render_pass: Pass) -> str:

@@ -2,8 +2,8 @@
 
 What lowering a node can refuse depends on its class, its values, and the shapes of what it reads; of a pointwise node
 valid numbers decide nothing. A node that agrees in all of these with one that was lowered before stands for the same
-operands. So a chain of 100,000 equal nodes takes one
-operation, and all later stages see few. The pixels of such a program have no meaning.
+operands. So a chain of 100,000 equal nodes takes one operation, and all later stages see few. The pixels of such a
+program have no meaning.
 
 A node is no sample if a file, a memory of an earlier frame or the content of other operations decided what it added.
 """

@@ -80,13 +80,13 @@ def find_changed_boxes(before: Array, after: Array) -> list[Box]:
         groups = np.split(changed, np.flatnonzero(np.diff(changed) > GAP) + 1) if len(changed) else []
         if len(groups) > MOST_BOXES:
             groups = [changed]
-        return [box for group in groups for box in _surround(np.vstack([before[group], after[group]]))]
+        return [box for group in groups for box in surround_rows(np.vstack([before[group], after[group]]))]
     same = (before[:shorter] == after[:shorter]).all(1)
     start = shorter if same.all() else int(same.argmin())
     left = shorter - start
     same = (before[len(before) - left :] == after[len(after) - left :]).all(1)[::-1]
     end = left if same.all() else int(same.argmin())
-    return _surround(np.vstack([before[start : len(before) - end], after[start : len(after) - end]]))
+    return surround_rows(np.vstack([before[start : len(before) - end], after[start : len(after) - end]]))
 
 
 def find_picture_boxes(commands: Array, rows: Array, textures: Collection[int]) -> list[Box]:
@@ -96,7 +96,7 @@ def find_picture_boxes(commands: Array, rows: Array, textures: Collection[int]) 
     return [
         box
         for number in np.flatnonzero(shows).tolist()
-        for box in _surround(rows[ends[number] - commands["count"][number] // 3 : ends[number]])
+        for box in surround_rows(rows[ends[number] - commands["count"][number] // 3 : ends[number]])
     ]
 
 
@@ -130,10 +130,6 @@ def _are_rectangles(first: Array, second: Array) -> Array:
 
 def surround_rows(rows: Array) -> list[Box]:
     """The box of all rows, or none if they draw nothing."""
-    return _surround(rows)
-
-
-def _surround(rows: Array) -> list[Box]:
     boxes = find_boxes(rows)
     boxes = boxes[(boxes[:, 0] < boxes[:, 2]) & (boxes[:, 1] < boxes[:, 3])]
     if not len(boxes):

@@ -31,16 +31,22 @@ def make_thumbnail(path: str | Path, width: int, height: int, sandbox: Sandbox) 
     layer = find_layer(read_info(path, sandbox=sandbox), "")
     pixels = read_layer(path, "", Kind.IMAGE, sandbox=sandbox).array
     step = max(1, min(pixels.shape[1] // (2 * width), pixels.shape[0] // (2 * height)))
-    small = np.ascontiguousarray(pixels[::step, ::step, :3], dtype=np.float32)
-    scale = min(width / small.shape[1], height / small.shape[0], 1.0)
-    if scale < 1.0:
-        across, down = (max(1, round(side * scale)) for side in (small.shape[1], small.shape[0]))
-        roi = oiio.ROI(0, across, 0, down)
-        resized = oiio.ImageBufAlgo.resize(oiio.ImageBuf(small), filtername="box", roi=roi)
-        small = np.asarray(resized.get_pixels(oiio.FLOAT), np.float32)
+    small = shrink_to_fit(pixels[::step, ::step, :3], width, height)
     if layer.is_data:
         return quantize(np.nan_to_num(small, nan=0.0), 8)
     return to_display(small, "" if layer.format.startswith("float") else NO_VIEW)
+
+
+def shrink_to_fit(pixels: Array, width: int, height: int) -> Array:
+    """Pixels within `width` x `height`, each the mean of those that it stands for, as float32. Few stay as they are."""
+    small = np.ascontiguousarray(pixels, dtype=np.float32)
+    scale = min(width / small.shape[1], height / small.shape[0], 1.0)
+    if scale == 1.0:
+        return small
+    across, down = (max(1, round(side * scale)) for side in (small.shape[1], small.shape[0]))
+    roi = oiio.ROI(0, across, 0, down)
+    resized = oiio.ImageBufAlgo.resize(oiio.ImageBuf(small), filtername="box", roi=roi)
+    return np.asarray(resized.get_pixels(oiio.FLOAT), np.float32)
 
 
 def load_thumbnail(path: str | Path, sandbox: Sandbox) -> Array:
