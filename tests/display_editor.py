@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 from halation.editor.window.opening import run
+from halation.editor.window.painting import measure_window
 from halation.editor.window.window import Window
 from halation.resources.atomic_write import write_text_atomically
 from halation.resources.sandbox import UNRESTRICTED
@@ -34,6 +35,8 @@ def main(graph: Path, report: Path, state: Path) -> None:
             "path": str(editor.session.path),
             "steps": list(editor.session.history.steps),
             "selection": [element.name for element in editor.session.selection],
+            "size": window.editor.places["Timeline"][2:],
+            "black": float((window.device.read_window(measure_window()) == 0).all(2).mean()),
             "sentences": [entry.sentence for entry in editor.log.entries],
         }
         write_text_atomically(report, json.dumps(facts), sandbox=UNRESTRICTED)

@@ -191,8 +191,8 @@ class NullDevice:
     def read_window_pixel(self) -> tuple[int, int, int]:
         return 0, 0, 0
 
-    def read_window(self) -> np.ndarray:
-        return np.zeros((1, 1, 3), np.uint8)
+    def read_window(self, size: tuple[int, int]) -> np.ndarray:
+        return np.zeros((*size[::-1], 3), np.uint8)
 
     def close(self) -> None:
         self.closed = True

@@ -220,8 +220,8 @@ class Device(Protocol):
         """The pixel at the lower left corner of the window."""
         ...
 
-    def read_window(self) -> np.ndarray:
-        """The window as it was shown last: [height, width, 3] of 8 bits, row 0 on top."""
+    def read_window(self, size: tuple[int, int]) -> np.ndarray:
+        """A window of that size as it was shown last: [height, width, 3] of 8 bits, row 0 on top."""
         ...
 
     def close(self) -> None:

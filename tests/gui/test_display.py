@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from halation import document
+from halation import document, presets
 from halation.graph import Graph, Output, Port, Settings
 from halation.nodes import Kind, catalogue
 from halation.resources.sandbox import UNRESTRICTED
@@ -146,3 +146,18 @@ def test_an_artist_at_a_real_display(tmp_path: Path) -> None:
         assert editor.wait(PATIENCE) == 0
     node = document.load(saved, sandbox=UNRESTRICTED).nodes["vignette"]
     assert node.center != (0.5, 0.5)  # type: ignore[union-attr]
+
+
+@pytest.mark.timeout(300)
+def test_a_window_has_all_of_its_pixels_after_the_window_manager_has_changed_its_size(tmp_path: Path) -> None:
+    report = tmp_path / "report.json"
+    script = Path(__file__).parents[1] / "display_editor.py"
+    words = (sys.executable, script, presets.paths()[0], report, tmp_path / "state")
+    with open_display() as environment, run_process(*words, env=environment):
+        desk = Desktop(environment, report)
+        desk.point_at("viewer image")  # the window manager has taken over the window by then
+        for width, height in ((1000, 600), (1250, 720), (900, 560)):
+            before = desk.facts["size"]
+            desk.xdotool("search", "--name", "Halation$", "windowsize", width, height)
+            since = desk.until(lambda facts, before=before: facts["size"] != before)["frame"]
+            desk.until(lambda facts, since=since: facts["frame"] > since + 5 and facts["black"] < 0.1)

@@ -16,6 +16,7 @@ from gui_driver import headless
 from halation import document
 from halation.authoring.commands import SetValue
 from halation.editor.window.opening import run
+from halation.editor.window.painting import measure_window
 from halation.editor.window.window import Window
 from halation.graph import Graph, Output, Port, Settings
 from halation.nodes import Kind
@@ -98,13 +99,16 @@ def test_pixels_are_those_of_a_window_that_is_drawn_whole(window: Window) -> Non
         painter = window._painter
         while True:  # until nothing comes in between, such as a tooltip that waits for a while
             yield from settle(window)
-            partial, lists = window.device.read_window().copy(), [drawn.memory for drawn in painter._lists]
+            partial, lists = (
+                window.device.read_window(measure_window()).copy(),
+                [drawn.memory for drawn in painter._lists],
+            )
             painter.redraw_all()
             yield True
             assert len(painter.drawn_boxes) == 1, "all of it was drawn"
             if lists == [drawn.memory for drawn in painter._lists]:
                 break
-        if np.any(partial != window.device.read_window()):
+        if np.any(partial != window.device.read_window(measure_window())):
             differing.append(act)
 
     def steps(window: Window) -> Iterator[bool]:

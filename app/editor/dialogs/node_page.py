@@ -78,12 +78,14 @@ class NodePage:
         prefix = "".join(f"{group}/" for group in session.place)
         paths = [(title, prefix + path) for title, path in (("Before", before), ("After", id)) if path]
         pictures = [(title, picture) for title, path in paths if (picture := find_picture(self._context.preview, path))]
+        gap = 16.0 * scale
+        width = min(_PICTURE * scale, (imgui.get_content_region_avail().x - gap) / 2)
         for index, (title, (reference, across, down)) in enumerate(pictures):
             if index:
-                imgui.same_line(0.0, 16.0 * scale)
+                imgui.same_line(0.0, gap)
             imgui.begin_group()
             draw_dim(self._context, title)
-            imgui.image(reference, ImVec2(_PICTURE * scale, _PICTURE * scale * down / across))
+            imgui.image(reference, ImVec2(width, width * down / across))
             imgui.end_group()
             corner, end = imgui.get_item_rect_min(), imgui.get_item_rect_max()
             self._context.places[f"picture {title}"] = (corner.x, corner.y, end.x, end.y)

@@ -289,7 +289,7 @@ class GraphView:
     def _controls(self, rows: Rows) -> None:
         session = rows.context.session
         rows.draw_heading("Controls")
-        rows.fit(session.graph.controls)
+        rows.fit(control.label or name for name, control in session.graph.controls.items())
         if not session.graph.controls:
             rows.note("Values that this graph offers on the command line, and when it is used as a group.")
         for name, control in session.graph.controls.items():

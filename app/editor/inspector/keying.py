@@ -23,6 +23,7 @@ from ..theme.style import mix, u32, ui_scale
 from ..toolkit.fields import background
 from ..toolkit.places import Rect, item_rect, place
 from ..toolkit.words import SMALL, draw_wrapped, font, note_below, tip
+from .rows import DIAMOND_WIDTH
 
 if TYPE_CHECKING:
     from ...authoring.session import Session
@@ -30,9 +31,6 @@ if TYPE_CHECKING:
     from .rows import Rows
 
 Look = Literal["still", "keys", "key", "expression"]
-
-WIDTH = 16.0
-"""The width of a diamond with its margin, at UI scale 1."""
 
 _DOCS: dict[Look, str] = {
     "still": "Not animated. Click to set a key at this frame",
@@ -106,7 +104,7 @@ class Keying:
         session, port, scale = rows.context.session, ports[0], ui_scale()
         look = look_of(session, port)
         imgui.same_line(0.0, 0.0)
-        rect = place(WIDTH * scale)
+        rect = place(DIAMOND_WIDTH * scale)
         imgui.push_item_flag(int(imgui.ItemFlags_.no_nav), True)
         pressed = imgui.invisible_button(f"##diamond {port}", (rect[2] - rect[0], rect[3] - rect[1]))
         imgui.pop_item_flag()
@@ -284,7 +282,7 @@ def paste(session: Session, ports: Ports, text: str) -> None:
 
 def _paint(palette: Palette, rect: Rect, look: Look, hovered: bool) -> None:
     draw, scale = imgui.get_window_draw_list(), ui_scale()
-    center = rect[2] - WIDTH * 0.5 * scale + scale, (rect[1] + rect[3]) * 0.5
+    center = rect[2] - DIAMOND_WIDTH * 0.5 * scale + scale, (rect[1] + rect[3]) * 0.5
     color = color_of(palette, look)
     size = (5.2 if look != "still" or hovered else 4.2) * scale
     if look in ("key", "expression"):

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from halation.nodes import Matte, pick_names, toggle_name
-from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...authoring.commands import SetValue
@@ -81,7 +80,7 @@ class MatteRows:
             return names
         rows.indent()
         imgui.set_next_item_width(rows.field_width)
-        hint = f"{icons.ICON_FA_MAGNIFYING_GLASS}  Find a name"
+        hint = "Find a name"
         _, text = imgui.input_text_with_hint(f"##search {key}", hint, self._search.get(key, ""))
         self._search[key] = text
         rows.context.places[f"search {key}"] = item_rect()

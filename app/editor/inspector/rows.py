@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from ..fields.fields import Fields
     from .context import InspectorContext
 
+DIAMOND_WIDTH = 16.0
+"""The width of the diamond of keys with its margin, between a name and its field, at UI scale 1."""
+
 
 class Rows:
     """The layout of names and fields in this frame."""
@@ -48,7 +51,7 @@ class Rows:
         """Fit the left column to these names: from a fraction `least` up to half of the panel."""
         scale = ui_scale()
         longest = max((imgui.calc_text_size(label.replace("_", " ")).x for label in labels), default=42.0 * scale)
-        needed_width = max(self.width * least, longest + 26.0 * scale)
+        needed_width = max(self.width * least, longest + (9.0 + DIAMOND_WIDTH) * scale + 1.0)
         self.name_width = min(needed_width, self.width * 0.48, 170.0 * scale)
         self.field_width = max(self.width - self.name_width - self.gap, 1.0)
 

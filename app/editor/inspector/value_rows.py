@@ -39,7 +39,8 @@ from .applying import (
 from .color_rows import space_field
 from .file_field import FileField
 from .item_rows import ItemRows
-from .keying import WIDTH, Keying, spoken, value_now
+from .keying import Keying, spoken, value_now
+from .rows import DIAMOND_WIDTH
 from .wheel_rows import draw_wheels
 
 if TYPE_CHECKING:
@@ -80,7 +81,7 @@ class ValueRows:
             doc=_tip(declaration, control),
             changed=changed,
             color=color,
-            spare=WIDTH * ui_scale(),
+            spare=DIAMOND_WIDTH * ui_scale(),
         )
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left):
             rows.act(lambda: reset(session, ports))
@@ -90,7 +91,7 @@ class ValueRows:
             menu |= imgui.is_item_hovered() and imgui.is_mouse_released(imgui.MouseButton_.right)
         else:
             imgui.same_line(0.0, 0.0)
-            imgui.dummy((WIDTH * ui_scale(), 1.0))
+            imgui.dummy((DIAMOND_WIDTH * ui_scale(), 1.0))
         width = rows.field()
         if source is not None:
             link_chip(rows, port, source, width)

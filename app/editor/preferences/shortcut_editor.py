@@ -42,7 +42,7 @@ class ShortcutEditor:
         self._draw_keymaps()
         label = f"{icons.ICON_FA_ROTATE_LEFT} Reset all"
         imgui.set_next_item_width(220 * ui_scale())
-        hint = f"{icons.ICON_FA_MAGNIFYING_GLASS}  Search actions"
+        hint = "Search actions"
         self._query = imgui.input_text_with_hint("##actions", hint, self._query)[1]
         record(self._context, "shortcut search")
         align_right(label)

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from halation.presets import picture
 from imgui_bundle import ImVec2, imgui
-from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...media.pictures.thumbnail import load_thumbnail
 from ...resources.sandbox import UNRESTRICTED
@@ -80,7 +79,7 @@ class PresetGallery:
             imgui.set_keyboard_focus_here()
             self._is_new = False
         flags = int(imgui.InputTextFlags_.enter_returns_true)
-        hint = f"{icons.ICON_FA_MAGNIFYING_GLASS}  Search {len(self._presets)} presets by name or tag"
+        hint = f"Search {len(self._presets)} presets by name or tag"
         entered, self._query = imgui.input_text_with_hint("##presets", hint, self._query, flags)
         record(self._context, "start search")
         leaves = imgui.is_item_active() and imgui.is_key_pressed(imgui.Key.down_arrow)

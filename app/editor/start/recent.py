@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from halation.presets import picture
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
@@ -39,8 +40,12 @@ class RecentList:
         self._textures.clear()
         recent_files = self._context.store.current.recent
         self._exists = {recent.path: recent.exists for recent in recent_files}
-        pictures = {recent.path: self._context.documents.pictures.find(recent.path) for recent in recent_files}
-        self._pixels = {path: _load(picture) for path, picture in pictures.items() if picture.is_file()}
+        self._pixels = {recent.path: self._load_picture(recent.path) for recent in recent_files}
+
+    def _load_picture(self, path: str) -> Array | None:
+        """What the viewer showed when a document was saved; for a preset that never was, its own picture."""
+        candidates = self._context.documents.pictures.find(path), picture(Path(path))
+        return next((_load(candidate) for candidate in candidates if candidate.is_file()), None)
 
     def close(self) -> None:
         """Release textures."""
@@ -108,9 +113,9 @@ class RecentList:
         lines.add_image(self._textures.get(recent.path, lambda: pixels), low, low + ImVec2(across, down))
 
 
-def _load(picture: Path) -> Array | None:
+def _load(path: Path) -> Array | None:
     """The picture of a document; None if the file is damaged: the next save replaces it."""
     try:
-        return load_thumbnail(picture, sandbox=UNRESTRICTED)
+        return load_thumbnail(path, sandbox=UNRESTRICTED)
     except HalationError:
         return None

@@ -35,6 +35,10 @@ from .damage import (
 TRIALS = 3
 """Frames with a pixel that must stay: two buffers would show the one of the frame before the last."""
 
+RESIZED = 3
+"""Frames that are drawn whole after a change of the window's size. Mesa learns of it only when a frame has been shown,
+and begins the next one with empty pixels; one more frame is for a size that changes while a frame is drawn."""
+
 
 class _DrawnList(Struct):
     """What one panel drew in a frame."""
@@ -76,6 +80,7 @@ class WindowPainter:
         self._device = device
         self._lists: tuple[_DrawnList, ...] = ()
         self._size: tuple[int, int] = (0, 0)
+        self._whole_frames = 0
         self._trial = 0
         self._is_able = is_able and device.target.software
         self.drawn_boxes: tuple[Box, ...] = ()
@@ -85,13 +90,11 @@ class WindowPainter:
         """Draw the frame whose panels are complete; leave it to the window library where only that can draw it."""
         written = self._device.take_written()
         if not self._is_able:
-            size, scale = imgui.get_io().display_size, imgui.get_io().display_framebuffer_scale
-            self._device.clear_window((0, 0, round(size.x * scale.x), round(size.y * scale.y)))
+            self._device.clear_window((0, 0, *measure_window()))
             return
         imgui.render()
-        picture = imgui.get_draw_data()
-        size, scale, corner = picture.display_size, picture.framebuffer_scale, picture.display_pos
-        window_size = round(size.x * scale.x), round(size.y * scale.y)
+        picture, window_size = imgui.get_draw_data(), measure_window()
+        scale, corner = picture.framebuffer_scale, picture.display_pos
         is_plain = (corner.x, corner.y, scale.x, scale.y) == (0.0, 0.0, 1.0, 1.0)
         if not is_plain or not self._has_known_memory(picture):
             self.redraw_all()
@@ -103,16 +106,20 @@ class WindowPainter:
     def _paint_changes(self, picture: imgui.ImDrawData, size: tuple[int, int], written: frozenset[int]) -> None:
         before, self._lists = self._lists, tuple(map(_copy_list, picture.cmd_lists))
         boxes: list[Box] = [(0, 0, *size)]
-        if size == self._size and self._trial > TRIALS and not _is_reordered(before, self._lists):
+        if size != self._size:
+            self._size = size
+            self.redraw_all(RESIZED)
+        if self._whole_frames > 0:
+            self._whole_frames -= 1
+        elif self._trial > TRIALS and not _is_reordered(before, self._lists):
             boxes = merge_boxes(_find_changes(before, self._lists, written), size)
-        self._size = size
         for box in boxes:
             self._paint_box(picture, box)
         self.drawn_boxes = tuple(boxes)
 
-    def redraw_all(self) -> None:
-        """Draw the next frame whole."""
-        self._size = (0, 0)
+    def redraw_all(self, frames: int = 1) -> None:
+        """Draw the next frames whole."""
+        self._whole_frames = max(self._whole_frames, frames)
 
     def leave_mark(self) -> None:
         """Draw the pixel of a trial; to be called before a frame is shown."""
@@ -163,6 +170,12 @@ class WindowPainter:
         if self._trial == 0:
             self._is_able = all(map(_has_known_layout, picture.cmd_lists))
         return self._is_able
+
+
+def measure_window() -> tuple[int, int]:
+    """Width and height of the window in pixels."""
+    size, scale = imgui.get_io().display_size, imgui.get_io().display_framebuffer_scale
+    return round(size.x * scale.x), round(size.y * scale.y)
 
 
 def _find_changes(before: Sequence[_DrawnList], after: Sequence[_DrawnList], written: frozenset[int]) -> list[Box]:

@@ -31,7 +31,7 @@ from .guard import draw_failure, draw_guarded, enable_error_recovery
 from .input_events import InputQueue
 from .layouts import LAYOUTS, apply_layout, make_splits
 from .menus import MenuBar
-from .painting import WindowPainter
+from .painting import RESIZED, WindowPainter, measure_window
 from .panels import DOCKED, OVERLAYS, Docked, Panel
 from .resting import GRACE, FrameWaker, choose_idle_rate
 from .screenshot import save_screenshot
@@ -165,6 +165,7 @@ class Window:
         imgui.get_io().config_flags |= int(imgui.ConfigFlags_.nav_enable_keyboard)
         imgui.get_io().config_drag_click_to_input_text = True
         self._input.connect(_host())
+        glfw.set_window_refresh_callback(_host(), lambda _: self._painter.redraw_all(RESIZED))
         glfw.set_drop_callback(_host(), lambda _, paths: self._dropped.extend(paths))  # pyright: ignore
 
     def _load_fonts(self) -> None:
@@ -375,7 +376,7 @@ class Window:
 
     def _screenshot(self) -> None:
         """Save the window as it was shown last."""
-        pixels = self.device.read_window()
+        pixels = self.device.read_window(measure_window())
         self.editor.dialogs.browse = Browse(
             "Save a screenshot",
             "export",

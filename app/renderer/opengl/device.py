@@ -212,9 +212,9 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
         red, green, blue = self.context.screen.read((0, 0, 1, 1), components=3, alignment=1)
         return red, green, blue
 
-    def read_window(self) -> np.ndarray:
-        width, height = self.context.screen.size
-        pixels = np.frombuffer(self.context.screen.read(components=3, alignment=1), np.uint8)
+    def read_window(self, size: tuple[int, int]) -> np.ndarray:
+        width, height = size
+        pixels = np.frombuffer(self.context.screen.read((0, 0, *size), components=3, alignment=1), np.uint8)
         return pixels.reshape(height, width, 3)[::-1]
 
     def close(self) -> None:
