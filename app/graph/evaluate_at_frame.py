@@ -72,9 +72,11 @@ def animation_fault(graph: Graph, port: Port, animation: Animation) -> str | Non
 
 def find_expression_loops(graph: Graph) -> Iterator[tuple[Port, str]]:
     """The ports whose expressions depend on themselves, each with a sentence."""
-    reads = {
-        port: list(_list_reads(graph, item)) for port, item in graph.animation.items() if isinstance(item, Expression)
-    }
+    reads: dict[Port, list[Port]] = {}
+    for port, item in graph.animation.items():
+        for name in item.names if isinstance(item, Expression) else ():
+            with suppress(GraphError):
+                reads.setdefault(port, []).append(find_named_value(graph, name)[0])
     cyclic = find_cyclic(reads)
     yield from ((port, f"{port}: its expression depends on itself") for port in reads if port in cyclic)
 
@@ -146,6 +148,7 @@ class _ValueEvaluation:
 
     def __init__(self, graph: Graph, frame: int, settings: Settings) -> None:
         self._graph, self._frame, self._settings = graph, frame, settings
+        self._named: dict[str, tuple[Port, int | None]] = {}
         self._results: dict[Port, Plain | GraphError] = {}
         self._in_progress: set[Port] = set()
 
@@ -171,7 +174,7 @@ class _ValueEvaluation:
                 todo.pop()
             elif port not in begun:
                 begun.add(port)
-                todo += [read_port for read_port in reversed(self._find_reads(port)) if read_port not in begun]
+                todo += [read_port for read_port in self._find_reads(port)[::-1] if read_port not in begun]
             else:
                 try:
                     self._results[port] = self._evaluate_animation(port, self._graph.animation[port])
@@ -179,10 +182,22 @@ class _ValueEvaluation:
                     self._results[port] = error.with_traceback(None)
 
     def _find_reads(self, port: Port) -> list[Port]:
-        """The animated values that an expression names."""
-        animation = self._graph.animation[port]
-        ports = _list_reads(self._graph, animation) if isinstance(animation, Expression) else ()
-        return [read_port for read_port in ports if read_port in self._graph.animation]
+        """The animated values that an expression names; names that mean none are left out."""
+        animation, ports = self._graph.animation[port], list[Port]()
+        for name in animation.names if isinstance(animation, Expression) else ():
+            try:
+                read_port = self._find_named_value(name)[0]
+            except GraphError:
+                continue
+            if read_port in self._graph.animation:
+                ports.append(read_port)
+        return ports
+
+    def _find_named_value(self, name: str) -> tuple[Port, int | None]:
+        """`find_named_value`, which looks a name up once."""
+        if name not in self._named:
+            self._named[name] = find_named_value(self._graph, name)
+        return self._named[name]
 
     def _evaluate_animation(self, port: Port, animation: Animation) -> Plain:
         value = self._graph.declaration(port)
@@ -198,7 +213,7 @@ class _ValueEvaluation:
         return fit_to_value(port, value, number, self._frame)
 
     def _evaluate_name(self, name: str) -> Scalar:
-        port, channel = find_named_value(self._graph, name)
+        port, channel = self._find_named_value(name)
         plain = self.evaluate(port)
         if isinstance(plain, ItemSet):
             raise GraphError(f"'{port}' holds named items: name a field of one, such as {port}.NAME.FIELD")
@@ -224,10 +239,3 @@ def fit_to_value(port: Port, value: Value, computed: Scalar, frame: int) -> Scal
     if isinstance(plain, tuple):
         return tuple(min(max(part, value.minimum), value.maximum) for part in plain)
     return type(plain)(min(max(plain, value.minimum), value.maximum))
-
-
-def _list_reads(graph: Graph, expression: Expression) -> Iterator[Port]:
-    """The values that an expression reads; names that mean none are left out."""
-    for name in expression.names:
-        with suppress(GraphError):
-            yield find_named_value(graph, name)[0]

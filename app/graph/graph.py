@@ -265,7 +265,7 @@ class Graph(Wired[Item], EndEdits):
         nodes = {
             id: item.with_values(**changed[id]) for id in changed if not isinstance(item := self.nodes[id], Unknown)
         }
-        still = {port: item for port, item in self.animation.items() if not plains.keys() & (port, port.whole)}
+        still = {port: item for port, item in self.animation.items() if port not in plains and port.whole not in plains}
         return self._with(nodes={**self.nodes, **nodes}, animation=still) if changed else self
 
     def animate(self, port: Port, animation: Animation | None) -> Self:
@@ -356,12 +356,12 @@ def _find_value(item: Item, name: str, id: str) -> Value:
 
 def find_setting(item: Item, name: str) -> Value | None:
     """What `declaration` gives before units, or None where there is no such value."""
+    if isinstance(item, Node) and name in item.values:
+        return structs.replace(item.declaration(name), default=item.setting(name))
     head, inner, field = split_path(name)
     if inner:
         value = find_setting(item, head)
         return value and find_field(value, inner, field)
-    if isinstance(item, Node) and name in item.values:
-        return structs.replace(item.declaration(name), default=item.setting(name))
     if isinstance(item, Group) and name in item.graph.controls and (value := control_value(item.graph, name)):
         return structs.replace(value, default=item.values.get(name, value.default))
     return None

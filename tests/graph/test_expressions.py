@@ -16,8 +16,8 @@ from halation.errors import GraphError
 from halation.graph.expressions import Expression, ExpressionError
 from halation.graph.expressions.functions import FUNCTIONS
 from halation.graph.expressions.noise import mix_bits
-from halation.graph.expressions.parser import MAX_DEPTH, MAX_LENGTH
-from halation.graph.expressions.tokens import write_name
+from halation.graph.expressions.parser import MAX_DEPTH
+from halation.graph.expressions.tokens import MAX_LENGTH, write_name
 
 
 @pytest.mark.parametrize(

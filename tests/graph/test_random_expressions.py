@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from expression_values import at
 from halation.graph.expressions import Expression, ExpressionError
-from halation.graph.expressions.parser import MAX_LENGTH
+from halation.graph.expressions.tokens import MAX_LENGTH
 
 REFERENCE = {
     **{

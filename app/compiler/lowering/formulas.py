@@ -192,7 +192,7 @@ def write_formula(text: str, names: tuple[str, ...], owner: str) -> ColorProgram
 def _write_function(text: str, names: tuple[str, ...]) -> ColorProgram:
     from ...graph.expressions.parser import parse_parts  # most graphs have no formula
 
-    part = parse_parts(text, FormulaWriter(names))
+    part = parse_parts(text, Expression(text).tokens, FormulaWriter(names))
     function = f"formula_{blake2b(repr((text, names)).encode(), digest_size=8).hexdigest()}"
     parameters = ["vec3 clock", *(f"{'vec4' if name in _PICTURES else 'float'} {name}" for name in names)]
     lines = [f"    vec4 named_{name} = formula_read({name});" for name in names]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cached_property
+from functools import cache, cached_property
 from typing import TYPE_CHECKING
 
 from halation.nodes import Scalar
@@ -12,7 +12,7 @@ from msgspec import Struct
 from .fault import ExpressionError
 
 if TYPE_CHECKING:
-    from .evaluate import Evaluator
+    from .evaluate import Evaluator, Scope
     from .tokens import Token
 
 
@@ -28,12 +28,10 @@ class Expression(Struct, frozen=True, dict=True):
 
     def evaluate(self, frame: float, time: float, rate: float, value: Callable[[str], Scalar]) -> Scalar:
         """The result at a time; `value` returns that of a name. Raises ExpressionError, and what `value` raises."""
-        from .evaluate import Scope
-
         evaluator = self._evaluator
         if isinstance(evaluator, ExpressionError):
             raise ExpressionError(evaluator.text, evaluator.position, evaluator.sentence)
-        return evaluator(Scope(float(frame), float(time), float(rate), value))
+        return evaluator(_load_scope()(float(frame), float(time), float(rate), value))
 
     @property
     def fault(self) -> ExpressionError | None:
@@ -43,10 +41,7 @@ class Expression(Struct, frozen=True, dict=True):
     @cached_property
     def tokens(self) -> tuple[Token, ...]:
         """The tokens of the text, also of one that cannot be parsed, for syntax coloring. Empty if it is too long."""
-        from .parser import MAX_LENGTH
-        from .tokens import tokenize
-
-        return tuple(tokenize(self.text)) if len(self.text) <= MAX_LENGTH else ()
+        return tuple(_load_tokenizer()(self.text))
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -71,12 +66,31 @@ class Expression(Struct, frozen=True, dict=True):
 
     @cached_property
     def _evaluator(self) -> Evaluator | ExpressionError:
-        from .parser import parse_expression
-
         try:
-            return parse_expression(self.text)
+            return _load_parser()(self.text, self.tokens)
         except ExpressionError as error:
             return error.with_traceback(None)
 
     def __reduce__(self) -> tuple[type[Expression], tuple[str]]:
         return Expression, (self.text,)
+
+
+@cache
+def _load_tokenizer() -> Callable[[str], list[Token]]:
+    from .tokens import tokenize
+
+    return tokenize
+
+
+@cache
+def _load_parser() -> Callable[[str, tuple[Token, ...]], Evaluator]:
+    from .parser import parse_expression
+
+    return parse_expression
+
+
+@cache
+def _load_scope() -> type[Scope]:
+    from .evaluate import Scope
+
+    return Scope

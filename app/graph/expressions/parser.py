@@ -21,13 +21,10 @@ from . import evaluate
 from .evaluate import CHANNELS, Evaluator
 from .fault import ExpressionError
 from .functions import FUNCTIONS, OPERATORS, ExpressionFunction
-from .tokens import Token, tokenize
+from .tokens import MAX_LENGTH, Token
 
 Part = TypeVar("Part")
 """What a part of an expression becomes."""
-
-MAX_LENGTH = 1000
-"""The longest expression, in characters: a choice, longer than any that a user types."""
 
 MAX_DEPTH = 64
 """The deepest nesting: a choice, far below the recursion limit of Python."""
@@ -74,27 +71,27 @@ class PartMaker(Protocol[Part]):
     def make_list(self, text: str, position: int, codes: Sequence[Part], /) -> Part: ...
 
 
-def parse_expression(text: str) -> Evaluator:
-    """The evaluator of an expression. Raises ExpressionError."""
-    return parse_parts(text, evaluate)
+def parse_expression(text: str, tokens: Sequence[Token]) -> Evaluator:
+    """The evaluator of an expression with these tokens. Raises ExpressionError."""
+    return parse_parts(text, tokens, evaluate)
 
 
-def parse_parts(text: str, maker: PartMaker[Part]) -> Part:
-    """What `maker` makes of an expression. Raises ExpressionError."""
+def parse_parts(text: str, tokens: Sequence[Token], maker: PartMaker[Part]) -> Part:
+    """What `maker` makes of an expression with these tokens. Raises ExpressionError."""
     if len(text) > MAX_LENGTH:
         raise ExpressionError(text, MAX_LENGTH, f"the expression is longer than {MAX_LENGTH:,} characters")
     if not text.strip():
         raise ExpressionError(text, 0, "the expression is empty")
-    return _Parser(text, maker).parse()
+    return _Parser(text, tokens, maker).parse()
 
 
 class _Parser(Generic[Part]):
     """A parser of one text."""
 
-    def __init__(self, text: str, maker: PartMaker[Part]) -> None:
+    def __init__(self, text: str, tokens: Sequence[Token], maker: PartMaker[Part]) -> None:
         self._text, self._maker = text, maker
-        self._tokens = [*tokenize(text), Token("end", len(text), len(text), "")]
-        self._place = self._depth = 0
+        self._rest = iter((*tokens, Token("end", len(text), len(text), "")))
+        self._next, self._depth = next(self._rest), 0
 
     def parse(self) -> Part:
         code, _ = self._parse_choice(self._next)
@@ -102,26 +99,22 @@ class _Parser(Generic[Part]):
             self._refuse_rest()
         return code
 
-    @property
-    def _next(self) -> Token:
-        return self._tokens[self._place]
-
     def _take(self) -> Token:
         token = self._next
-        self._place += 1
+        self._next = next(self._rest, token)
         return token
 
     def _take_if(self, *words: str) -> Token | None:
         """Take the next token if it is one of these words; else None."""
         token = self._next
-        return self._take() if token.kind in ("operator", "bracket", "word") and token.text in words else None
+        return self._take() if token.text in words and token.kind in ("operator", "bracket", "word") else None
 
     def _fail(self, token: Token, sentence: str) -> NoReturn:
         raise ExpressionError(self._text, token.start, sentence)
 
-    def _check_depth(self, token: Token, code: Part, *parts: ParsedPart[Part]) -> ParsedPart[Part]:
-        """An evaluator with its depth, one more than that of its parts. Raises ExpressionError if it is too deep."""
-        depth = 1 + max((depth for _, depth in parts), default=0)
+    def _check_depth(self, token: Token, code: Part, parts: Sequence[ParsedPart[Part]]) -> ParsedPart[Part]:
+        """A part with its depth, one more than that of its own parts. Raises ExpressionError if it is too deep."""
+        depth = 1 + max([depth for _, depth in parts], default=0)
         if depth > MAX_DEPTH:
             self._fail(token, f"the expression is more than {MAX_DEPTH} levels deep")
         return code, depth
@@ -145,7 +138,7 @@ class _Parser(Generic[Part]):
         no = self._parse_choice(token)
         self._depth -= 1
         code = self._maker.make_choice(self._text, token.start, condition[0], yes[0], no[0])
-        return self._check_depth(token, code, condition, yes, no)
+        return self._check_depth(token, code, (condition, yes, no))
 
     def _parse_binary(self, level: int) -> ParsedPart[Part]:
         """Operands joined by operators of this level or higher precedence."""
@@ -156,7 +149,8 @@ class _Parser(Generic[Part]):
 
     def _next_level(self) -> int:
         """The level of the next token if it is an operator, else 0."""
-        return _LEVELS.get(self._next.text, 0) if self._next.kind in ("operator", "word") else 0
+        token = self._next
+        return _LEVELS.get(token.text, 0) if token.kind in ("operator", "word") else 0
 
     def _parse_chain(self, first: ParsedPart[Part], level: int) -> ParsedPart[Part]:
         """All operators of one level after an operand, as one part, so that long sums are not deep."""
@@ -175,7 +169,7 @@ class _Parser(Generic[Part]):
             code = self._maker.make_comparison(self._text, first[0], *steps[0])
         else:
             code = self._maker.make_arithmetic(self._text, first[0], steps)
-        return self._check_depth(rest[0][0], code, first, *(part for _, part in rest))
+        return self._check_depth(rest[0][0], code, [first, *[part for _, part in rest]])
 
     def _parse_unary(self) -> ParsedPart[Part]:
         """A power, or an operand with a sign or a negation."""
@@ -189,7 +183,7 @@ class _Parser(Generic[Part]):
             power = self._parse_unary()
             self._depth -= 1
             code = self._maker.make_arithmetic(self._text, base[0], [("^", token.start, power[0])])
-            return self._check_depth(token, code, base, power)
+            return self._check_depth(token, code, (base, power))
         self._enter(token)
         part = self._parse_binary(_COMPARE) if token.text == "not" else self._parse_unary()
         self._depth -= 1
@@ -197,7 +191,7 @@ class _Parser(Generic[Part]):
             code = self._maker.make_sign(part[0], minus=token.text == "-")
         else:
             code = self._maker.make_negation(self._text, token.start, part[0])
-        return self._check_depth(token, code, part)
+        return self._check_depth(token, code, (part,))
 
     def _parse_postfix(self) -> ParsedPart[Part]:
         part = self._parse_primary()
@@ -205,7 +199,8 @@ class _Parser(Generic[Part]):
             name = self._take()
             if name.text not in CHANNELS:
                 self._fail(name, "a channel is missing: x, y, z, w or r, g, b, a")
-            part = self._check_depth(name, self._maker.make_channel(self._text, name.start, part[0], name.text), part)
+            code = self._maker.make_channel(self._text, name.start, part[0], name.text)
+            part = self._check_depth(name, code, (part,))
         return part
 
     def _parse_primary(self) -> ParsedPart[Part]:
@@ -214,13 +209,13 @@ class _Parser(Generic[Part]):
             number = float(token.text)
             if math.isinf(number):
                 self._fail(token, f"{token.text} is too large")
-            return self._check_depth(token, self._maker.make_constant(number))
+            return self._maker.make_constant(number), 1
         if token.kind == "constant":
-            return self._check_depth(token, self._maker.make_constant(_CONSTANTS[token.text]))
+            return self._maker.make_constant(_CONSTANTS[token.text]), 1
         if token.kind == "variable":
-            return self._check_depth(token, self._maker.make_variable(token.text))
+            return self._maker.make_variable(token.text), 1
         if token.kind == "name":
-            return self._check_depth(token, self._maker.make_name(self._text, token.start, token.name))
+            return self._maker.make_name(self._text, token.start, token.name), 1
         if token.kind == "function":
             return self._parse_call(token)
         if token.kind == "bracket" and token.text == "(":
@@ -231,9 +226,8 @@ class _Parser(Generic[Part]):
             parts = self._parse_list(token)
             if not parts:
                 self._fail(token, "a list must have at least one number")
-            return self._check_depth(
-                token, self._maker.make_list(self._text, token.start, [code for code, _ in parts]), *parts
-            )
+            code = self._maker.make_list(self._text, token.start, [code for code, _ in parts])
+            return self._check_depth(token, code, parts)
         return self._refuse(token)
 
     def _parse_call(self, token: Token) -> ParsedPart[Part]:
@@ -244,7 +238,7 @@ class _Parser(Generic[Part]):
         if len(parts) not in function.counts:
             self._fail(token, f"{function.name} does not take {len(parts)} values: write {function.signature}")
         code = self._maker.make_call(self._text, token.start, function, [code for code, _ in parts])
-        return self._check_depth(token, code, *parts)
+        return self._check_depth(token, code, parts)
 
     def _parse_list(self, opening: Token) -> list[ParsedPart[Part]]:
         """The expressions between brackets, separated by commas; the opening bracket is already taken."""

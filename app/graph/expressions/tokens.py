@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Literal
 
 from msgspec import Struct
@@ -19,15 +20,23 @@ CONSTANTS = frozenset({"pi", "tau", "e", "true", "false"})
 
 WORDS = frozenset({"and", "or", "not", "if", "else"})
 
-_RESERVED = VARIABLES | CONSTANTS | WORDS
+_RESERVED: Mapping[str, TokenKind] = MappingProxyType(
+    {
+        **dict.fromkeys(VARIABLES, "variable"),
+        **dict.fromkeys(CONSTANTS, "constant"),
+        **dict.fromkeys(WORDS, "word"),
+    }
+)
+
+MAX_LENGTH = 1000
+"""The longest expression, in characters: a choice, longer than any that a user types."""
 
 _PARTS = re.compile(
-    r"(?P<space>\s+)"
-    r"|(?P<number>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)"
+    r"\s*+(?:(?P<number>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)"
     r"|(?P<name>(?:[^\W\d]\w*|`(?:[^`]|``)+`)(?:\.(?:[^\W\d]\w*|`(?:[^`]|``)+`))*)"
     r"|(?P<operator>\*\*|&&|\|\||[<>=!]=|[-+*/%^<>!?:.])"
     r"|(?P<bracket>[()\[\],])"
-    r"|(?P<unknown>.)",
+    r"|(?P<unknown>.))",
     re.DOTALL,
 )
 _CALLED = re.compile(r"\s*\(")
@@ -44,14 +53,17 @@ class Token(Struct, frozen=True):
     name: str = ""
 
 
-def tokenize(text: str) -> Iterator[Token]:
-    """The tokens of a text without spaces. It never fails: other characters have the kind `unknown`."""
-    for match in _PARTS.finditer(text):
-        kind, word = match.lastgroup, match.group()
+def tokenize(text: str) -> list[Token]:
+    """The tokens of a text without spaces; none if it is too long. It never fails: other characters are `unknown`."""
+    tokens: list[Token] = []
+    for match in _PARTS.finditer(text) if len(text) <= MAX_LENGTH else ():
+        kind, end = match.lastgroup, match.end()
         if kind == "name":
-            yield _classify_name(word, match.start(), match.end(), text)
+            tokens.append(_classify_name(match[kind], end, text))
         elif kind == "number" or kind == "operator" or kind == "bracket" or kind == "unknown":
-            yield Token(kind, match.start(), match.end(), word)
+            word = match[kind]
+            tokens.append(Token(kind, end - len(word), end, word))
+    return tokens
 
 
 def write_name(name: str) -> str:
@@ -68,18 +80,17 @@ def split_name(word: str) -> list[str]:
     return [quoted.replace("``", "`") or plain for quoted, plain in _SEGMENTS.findall(word)]
 
 
-def _classify_name(word: str, start: int, end: int, text: str) -> Token:
-    parts = split_name(word)
-    if "`" not in word and not all(part.isidentifier() for part in parts):
-        return Token("unknown", start, end, word)
-    if any(not part or "." in part for part in parts):
-        return Token("unknown", start, end, word)
-    if word in WORDS:
-        return Token("word", start, end, word)
-    if word in CONSTANTS:
-        return Token("constant", start, end, word)
-    if word in VARIABLES:
-        return Token("variable", start, end, word)
-    if _CALLED.match(text, end) and word.isidentifier():
+def _classify_name(word: str, end: int, text: str) -> Token:
+    start, name = end - len(word), word
+    if kind := _RESERVED.get(word):
+        return Token(kind, start, end, word)
+    if "`" in word or not word.isascii():  # else every part is an identifier
+        parts = split_name(word)
+        if "`" not in word and not all(part.isidentifier() for part in parts):
+            return Token("unknown", start, end, word)
+        if any(not part or "." in part for part in parts):
+            return Token("unknown", start, end, word)
+        name = ".".join(parts)
+    if word.isidentifier() and _CALLED.match(text, end):
         return Token("function", start, end, word)
-    return Token("name", start, end, word, ".".join(parts))
+    return Token("name", start, end, word, name)
