@@ -355,3 +355,31 @@ def test_a_dropped_frame_stands_for_its_sequence_if_wanted(gui, tmp_path) -> Non
         assert ui.session.graph.value(Port(ui.session.active, "path")) == path
 
     gui(body)
+
+
+def test_a_loop_of_cached_frames_is_drawn_through_the_view_once(gui, tmp_path) -> None:
+    pattern = shot(tmp_path)
+
+    def body(ui) -> None:
+        start(ui, graph_of(pattern, "exposure", size=(64, 36), frames=(1, 12)))
+        ui.editor.actions.run("time.play")
+        ui.until(lambda: len(ui.editor.preview.frames) == 12)
+        frames = set[int]()
+        display = ui.editor.display
+
+        def play_all() -> int:
+            """How often the display draws until the viewer has shown every frame."""
+            before = display.draw_count
+            frames.clear()
+            ui.until(lambda: frames.add(ui.editor.preview.find_whole_image("A").frame) or len(frames) == 12)
+            return display.draw_count - before
+
+        play_all()
+        assert play_all() == 0
+        ui.editor.viewer.exposure = 1.0  # all of them look different now
+        assert play_all() >= 11
+        ui.editor.actions.run("time.play")
+        ui.settled()
+        assert not any(slot.startswith("viewer ") for slot in display._slots), "slots are given back"
+
+    gui(body)

@@ -28,6 +28,7 @@ from .measuring import format_pixel, format_pixel_number, make_opaque_color
 from .orbit import find_orbit_node
 from .overlays import draw_badge, draw_message, draw_overlays, draw_progress
 from .pacing import PictureTimer
+from .played_pictures import STILL, PlayedPictures
 from .reading import Scan, ValueReader
 from .saving import ask_to_save, take_snapshot
 from .strokes import draw_label
@@ -83,6 +84,7 @@ class Viewer:
         self._next_reading = 0.0
         self._finder = InvalidPixelSearch(context)
         self._watch = PictureTimer()
+        self._played = PlayedPictures(context.display)
         self._seconds = 0.0
         self._busy_since: float | None = None
         self._search = 0
@@ -179,8 +181,9 @@ class Viewer:
             look = look_of(
                 viewer, sight, meaning, viewer.span, images.view, palette.surround, find_color_manager(self._context)
             )
+        slot = self._choose_slot(images, sight.panel)
         texture = self._context.log.attempt(
-            lambda: self._context.display.draw("viewer", sight.panel, images.a, images.b, look)
+            lambda: self._context.display.draw(slot, sight.panel, images.a, images.b, look)
         )
         if texture is None:  # the config has no such view
             viewer.view = viewer.display = viewer.look = ""
@@ -204,6 +207,14 @@ class Viewer:
             lines.pop_clip_rect()
         self._save(images, look)
         return look
+
+    def _choose_slot(self, images: _FrameImages, size: tuple[int, int]) -> str:
+        """The slot of the display for the pictures of this frame."""
+        if not self._context.preview.skims or images.a is None:
+            self._played.clear()
+            return STILL
+        contents = images.a.key, images.b.key if images.b is not None else ""
+        return self._played.choose_slot(contents, size, self._context.preview.memory[1])
 
     def _save(self, images: _FrameImages, look: Look) -> None:
         """Take the snapshot or save the picture that the user asked for.
@@ -298,13 +309,9 @@ class Viewer:
             if name == A and values:
                 self._use(values)
         viewer.copying = False
-        if (
-            images.a is not None
-            and is_due
-            and not self._context.preview.busy
-            and viewer.warn_nonfinite
-            and not self._context.interface.dragging
-        ):
+        if self._context.preview.skims:  # a picture that is gone in a moment
+            self._scan.step(self._context.probe, None)
+        elif is_due and viewer.warn_nonfinite and not (self._context.preview.busy or self._context.interface.dragging):
             self._scan.step(self._context.probe, images.a)
 
     def _use(self, values: tuple[float, ...]) -> None:

@@ -100,23 +100,30 @@ def find_picture_boxes(commands: Array, rows: Array, textures: Collection[int]) 
     ]
 
 
-def find_cover(rows: Array, box: Box) -> int | None:
-    """The last row from which on nothing below can be seen in a box: an opaque rectangle of one color covers it.
+Covers = tuple[Array, Array]
+"""Rows at which opaque rectangles of one color begin, and their boxes."""
+
+
+def find_covers(rows: Array) -> Covers:
+    """The opaque rectangles of a list, which hide what lies below them.
 
     Panels lie on backgrounds that lie on each other: four layers, each as large as the panel, and three are in vain.
     """
     if len(rows) < 2:
-        return None
+        return np.empty(0, np.intp), np.empty((0, 4), np.float32)
     corners = np.ascontiguousarray(rows[:, :_CLIP]).reshape(-1, 3, VERTEX)
     is_solid = (rows[:, _TEXTURE : _TEXTURE + 2] != 0).any(1) & (corners[..., 4] >> 24 == 255).all(1)
     is_solid &= (corners[:, 1:, 2:] == corners[:, :1, 2:]).all((1, 2))
     starts = np.flatnonzero(is_solid[:-1] & is_solid[1:])
     starts = starts[_are_rectangles(corners[starts, :, :2], corners[starts + 1, :, :2])]
-    if not len(starts):
-        return None
-    boxes = find_boxes(rows[starts])
-    covers = (boxes[:, :2] <= box[:2]).all(1) & (boxes[:, 2:] >= box[2:]).all(1)
-    return int(starts[covers][-1]) if covers.any() else None
+    return starts, find_boxes(rows[starts])
+
+
+def find_last_cover(covers: Covers, box: Box) -> int | None:
+    """The last row from which on nothing below can be seen in a box."""
+    starts, boxes = covers
+    covering = starts[(boxes[:, :2] <= box[:2]).all(1) & (boxes[:, 2:] >= box[2:]).all(1)]
+    return int(covering[-1]) if len(covering) else None
 
 
 def _are_rectangles(first: Array, second: Array) -> Array:

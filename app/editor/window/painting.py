@@ -24,8 +24,10 @@ from .damage import (
     VERTEX,
     Array,
     Box,
+    Covers,
     find_changed_boxes,
-    find_cover,
+    find_covers,
+    find_last_cover,
     find_picture_boxes,
     make_rows,
     merge_boxes,
@@ -48,6 +50,7 @@ class _DrawnList(Struct):
     indices: bytes
     commands: bytes
     _rows: Array | None = None
+    _covers: Covers | None = None
 
     @property
     def memory(self) -> tuple[bytes, bytes, bytes]:
@@ -71,6 +74,17 @@ class _DrawnList(Struct):
             vertices = np.frombuffer(self.vertices, np.uint32).reshape(-1, VERTEX)
             self._rows = make_rows(vertices, self.index_array, self.command_table)
         return self._rows
+
+    @property
+    def covers(self) -> Covers:
+        """Its opaque rectangles."""
+        if self._covers is None:
+            self._covers = find_covers(self.rows)
+        return self._covers
+
+    def take_from(self, equal: _DrawnList) -> None:
+        """Take what was found out about a list that draws the same."""
+        self._rows, self._covers = equal._rows, equal._covers
 
 
 class WindowPainter:
@@ -151,7 +165,7 @@ class WindowPainter:
     def _skip_covered(self, tables: Sequence[Array], box: Box) -> bool:
         """Take out of the commands what something opaque covers in a box; False if nothing covers all of it."""
         for number in reversed(range(len(tables))):
-            row = find_cover(self._lists[number].rows, box)
+            row = find_last_cover(self._lists[number].covers, box)
             if row is None:
                 continue
             for table in tables[:number]:
@@ -189,7 +203,7 @@ def _find_changes(before: Sequence[_DrawnList], after: Sequence[_DrawnList], wri
         if past.memory != drawn.memory:
             boxes += find_changed_boxes(past.rows, drawn.rows)
         else:
-            drawn._rows = past._rows
+            drawn.take_from(past)
         if written and np.isin(drawn.command_table["texture"], list(written)).any():
             boxes += find_picture_boxes(drawn.command_table, drawn.rows, written)
     return boxes + [box for gone in earlier.values() for box in surround_rows(gone.rows)]

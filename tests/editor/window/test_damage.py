@@ -7,7 +7,8 @@ import pytest
 from halation.editor.window.damage import (
     COMMAND,
     find_changed_boxes,
-    find_cover,
+    find_covers,
+    find_last_cover,
     find_picture_boxes,
     make_rows,
     merge_boxes,
@@ -116,11 +117,11 @@ def test_nothing_below_a_cover_is_seen(seed: int) -> None:
     rows = make_list(rects, clips)[1]
     rows[:, 19] = 1  # the texture of the interface itself, which is opaque where rectangles read it
     box = (10, 6, 30, 20)
-    cover = find_cover(rows, box)
+    cover = find_last_cover(find_covers(rows), box)
     assert cover is not None and cover % 2 == 0
     part = np.s_[box[1] : box[3], box[0] : box[2]]
     left = [rect if number >= cover // 2 else (0, 0, 0, 0, 0) for number, rect in enumerate(rects)]
     assert (draw(rects, clips)[part] == draw(left, clips)[part]).all()
-    assert find_cover(rows, (0, 0, 64, 48)) is None
+    assert find_last_cover(find_covers(rows), (0, 0, 64, 48)) is None
     rows[:, 19] = 0  # pictures may let through what is below
-    assert find_cover(rows, box) is None
+    assert find_last_cover(find_covers(rows), box) is None
