@@ -16,7 +16,8 @@ _INTRODUCTION = """\
 
 {count} nodes in {menus} menus. A value has a default, a range that its slider covers, and limits that typing cannot
 leave. Units: `px` pixels at full size, `height` a fraction of the height of the picture, `deg` degrees, `EV`
-photographic stops, `ratio` a factor, `count` a whole number of things, `s` seconds, `scene` the units of the scene.
+photographic stops, `ratio` a factor, `count` a whole number of things, `s` seconds, `scene` the units of the scene,
+`K` kelvin, `mm` millimeters.
 
 Every node that changes its input `image` at the same size has a mask: an input `mask` says where the change is seen,
 from 0 to 1, and without a link it is seen everywhere. The value `mix` (0 to 1) says how much of it is seen, and

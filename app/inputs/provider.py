@@ -336,7 +336,7 @@ def _check_within(path: str, folder: str) -> None:
 
 
 def fit_channels(array: Array, kind: Kind, width: int) -> Array:
-    """An array with this many channels: missing alpha is 1, a single channel is grey, other missing ones are 0."""
+    """An array with this many channels: missing alpha is 1, a single channel is gray, other missing ones are 0."""
     import numpy as np
 
     if array.ndim == 2:

@@ -37,12 +37,12 @@ class CameraModel(Struct, frozen=True):
 
     @property
     def right(self) -> Vector3:
-        """The unit vector towards the right edge of the picture."""
+        """The unit vector toward the right edge of the picture."""
         return _unit(_without(self._row(0), self.forward))
 
     @property
     def down(self) -> Vector3:
-        """The unit vector towards the lower edge of the picture."""
+        """The unit vector toward the lower edge of the picture."""
         return _unit(_without(self._row(1), self.forward))
 
     @property

@@ -28,7 +28,7 @@ REFERENCE_HEIGHT = 1080
 MAX_REFERENCE_HEIGHT = 65536
 """The largest reference height, as high as the highest picture that is read."""
 
-WORKING_UNITS = frozenset({None, "EV", "ratio", "count", "s", "scene", "K"})
+WORKING_UNITS = frozenset({None, "EV", "ratio", "count", "s", "scene", "K", "mm"})
 """Units of numbers that shaders get as they are."""
 
 _REFERENCE = re.compile(r"px@([1-9]\d{0,4})")

@@ -14,7 +14,7 @@ class Meaning(Struct, frozen=True):
     """How numbers of a layer are meant: times `scale` plus `offset`, channel by channel, they are of this kind.
 
     Depth is "planar", "radial", "inverse", "negative" or "normalized"; vectors refer to "world", "camera" (x right, y
-    up, z towards the viewer) or "camera_ahead" axes; motion is "from_previous" or "to_next", in pixels, y down.
+    up, z toward the viewer) or "camera_ahead" axes; motion is "from_previous" or "to_next", in pixels, y down.
     """
 
     kind: str

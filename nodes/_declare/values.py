@@ -13,13 +13,14 @@ from .items import ItemSet, NamedItem, Scalar
 from .sockets import glsl_type
 from .splines import POINT_LENGTH
 
-Unit = Literal["px", "height", "deg", "EV", "ratio", "count", "s", "scene", "K"]
+Unit = Literal["px", "height", "deg", "EV", "ratio", "count", "s", "scene", "K", "mm"]
 """The unit of a number.
 
 `px`: pixels at full size, scaled with a proxy. `height`: fraction of the picture's height, which GLSL gets in pixels.
 A graph may give numbers of either in another unit, such as pixels at a height of 1080.
 `deg`: degrees, which GLSL gets in radians. `EV`: photographic stops. `ratio`: a plain factor. `count`: a number of
 things. `s`: seconds. `scene`: the scene's own units (radiance, depth). `K`: kelvin, of a color temperature.
+`mm`: millimeters, of lenses and sensors.
 """
 
 

@@ -4,7 +4,7 @@ from .._declare import RGBA, Doc, Image, Pointwise, Slider, Trait, Wheel
 
 
 class Cdl(Pointwise):
-    """Grade with a color decision list: slope, offset, power, then saturation. Many programs exchange such lists.
+    """Grade with a color decision list: slope, offset, power, then saturation. Many programs read and write such lists.
 
     Each channel becomes `(in * slope + offset) ^ power`. Then saturation moves it away from or toward the Rec.709
     luminance (ASC CDL 1.2, 2009). Works on the color without its alpha; alpha stays. The alphas of the three colors

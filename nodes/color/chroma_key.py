@@ -63,7 +63,7 @@ class ChromaKey(Pointwise):
             1.0,
             unit="ratio",
             minimum=0.0,
-            doc="For distance: from this far away from the screen's color, a pixel is solid.",
+            doc="For distance: a pixel that is at least this far from the screen's color is solid.",
         ),
     ] = 0.5
     spill: Annotated[

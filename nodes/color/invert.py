@@ -6,9 +6,9 @@ from .._declare import Doc, Fraction, Image, OutputSocket, Pointwise, Slider
 class Invert(Pointwise):
     """Turn a picture into its negative.
 
-    `display` is 1 - c of sRGB codes (IEC 61966-2-1), the negative that the eye expects. `linear` is 1 - c of light, for
-    masks and data. `stops` mirrors brightness around middle gray, 0.18^2 / c, within eight stops of it. Applied twice,
-    each gives the picture back. Works on the color without its alpha; alpha stays.
+    `display` is 1 - c of sRGB values (IEC 61966-2-1), the negative that the eye expects. `linear` is 1 - c of light,
+    for masks and data. `stops` mirrors brightness around middle gray, 0.18^2 / c, within eight stops of it. Applied
+    twice, each gives the picture back. Works on the color without its alpha; alpha stays.
     """
 
     aliases = ("negative", "invert color", "negate", "inverse", "complement", "invert mask")

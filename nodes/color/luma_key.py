@@ -4,7 +4,7 @@ from .._declare import Doc, Field, Image, OutputSocket, Pointwise, Slider
 
 
 class LumaKey(Pointwise):
-    """Cut a picture out by its brightness: what lies between two brightnesses stays.
+    """Cut a picture out by its brightness: what lies between two levels stays.
 
     The matte is 1 between low and high. Beyond them it falls to 0 over the softness, linearly in light. `out` is the
     picture times the matte, `matte` is the matte times alpha. Brightness is that of the color without its alpha.

@@ -7,7 +7,7 @@ from ._spaces import WORKING, Space, name_space
 class LutFile(Filter):
     """Apply a lookup table or a list of color operations from a file: .cube, .3dl, .csp, .spi3d, .clf, .cc, .icc, ...
 
-    Choose the color spaces that the table was made for. Most looks take a camera's log or sRGB codes, and give codes
+    Choose the color spaces that the table was made for. Most looks take a camera's log or sRGB values, and give values
     for a display, which the node brings back to scene light. The result is OpenColorIO's own GLSL, so it is exact;
     tables of three dimensions use tetrahedral interpolation. Works on the color without its alpha; alpha stays. Without
     a file the picture passes unchanged.

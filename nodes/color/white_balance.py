@@ -26,7 +26,7 @@ class WhiteBalance(Pointwise):
         Slider(
             2000.0,
             12000.0,
-            unit="scene",
+            unit="K",
             minimum=1667.0,
             maximum=15000.0,
             doc="Color temperature of the light in kelvin: candle 1850, bulb 2850, noon 5500, shade 8000.",

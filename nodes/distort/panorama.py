@@ -29,7 +29,7 @@ class Panorama(Filter):
     is equidistant: the distance from the middle grows with the angle. A mirror ball is a polished ball seen from far
     away. A little planet is stereographic and looks down. Perspective is what a camera sees.
 
-    The result has as many pixels to a quarter turn as the picture, and even sides, as videos need them. Faces of cubes
+    The result has as many pixels per quarter turn as the picture, and even sides, as videos need them. Faces of cubes
     and the sides of a lat-long picture join without a seam. What a projection does not show is empty.
     """
 

@@ -16,7 +16,7 @@ class CameraVelocity(Filter):
         "motion vectors", "vector generator", "velocity", "camera motion", "motion vector pass", "vector pass", "speed",
     )  # fmt: skip
 
-    depth = Field(doc="Planar distance, along the viewing direction of the camera.")
+    depth = Field(doc="Planar depth: the distance along the camera's axis.")
     camera = CameraSocket(doc="The camera of this frame.")
     before = CameraSocket(0.0, doc="The camera of the previous frame. Without a link, it is `camera` at that frame.")
     after = CameraSocket(

@@ -21,8 +21,8 @@ class Curvature(Filter):
 
     normal = Vector(width=3, doc="Normals of surfaces.")
     position = Vector(0.0, width=3, doc="Positions in the world.")
-    depth = Field(0.0, doc="Distance from the camera, in place of positions.")
-    camera = CameraSocket(0.0, doc="Without one, normals alone are the camera's own: x right, y up, z towards it.")
+    depth = Field(0.0, doc="Planar depth: the distance along the camera's axis, in place of positions.")
+    camera = CameraSocket(0.0, doc="Without one, normals alone are the camera's own: x right, y up, z toward it.")
     radius: Annotated[
         float,
         Slider(

@@ -15,7 +15,7 @@ class DepthSlice(Pointwise):
         "depth range", "isolate depth", "z depth mask",
     )  # fmt: skip
 
-    depth = Field(doc="Distance from the camera.")
+    depth = Field(doc="Planar depth: the distance along the camera's axis.")
     near: Annotated[float, Slider(0.0, 100.0, unit="scene", minimum=0.0, doc="Nearer pixels are cut away.")] = 6.0
     far: Annotated[float, Slider(0.0, 100.0, unit="scene", minimum=0.0, doc="Farther pixels are cut away.")] = 9.0
     near_softness: Annotated[

@@ -13,9 +13,9 @@ class Facing(Filter):
     proxy_notes = (ProxyNote(("facing",), "it compares neighboring pixels, which are farther apart in a proxy"),)
 
     normal = Vector(width=3, doc="Normals of surfaces.")
-    camera = CameraSocket(0.0, doc="Without one, normals are the camera's own: x right, y up, z towards it.")
+    camera = CameraSocket(0.0, doc="Without one, normals are the camera's own: x right, y up, z toward it.")
 
-    facing = OutputSocket(Field(doc="0..1."))
+    facing = OutputSocket(Field(doc="1 where a surface faces the camera, 0 where it turns away."))
 
     def passes(self, draw: Draw) -> Drawn:
         camera = draw.camera(self.camera)

@@ -35,7 +35,7 @@ class Fog(Filter):
     traits = (Trait.NEEDS_SCENE_LIGHT,)
 
     image = Image()
-    depth = Field(doc="Distance from the camera; pixels without depth are sky.")
+    depth = Field(doc="Planar depth: the distance along the camera's axis. Pixels without depth are sky.")
     position = Vector(0.0, width=3, doc="Positions in the world, for the height if no camera is linked.")
     camera = CameraSocket(0.0, doc="For the height, the sun, and true distances.")
     mode: Annotated[
@@ -89,7 +89,7 @@ class Fog(Filter):
             "Keep: fog only where the picture covers, for a layer that lies over others. Fill: fog in empty places too."
         ),
     ] = "keep"
-    sun: Annotated[Fraction, Doc("How much the fog glows towards the sun; it needs a camera.")] = 0.0
+    sun: Annotated[Fraction, Doc("How much the fog glows toward the sun; it needs a camera.")] = 0.0
     sun_color: Annotated[RGBA, Doc("Color of the fog in front of the sun.")] = (1.6, 1.1, 0.6, 1.0)
     sun_direction: Annotated[
         tuple[float, float, float],

@@ -13,8 +13,8 @@ class GeometryEdges(Filter):
 
     It uses those that are linked. Depth: the second difference of 1 / depth along a row or column, relative
     to the nearest of three pixels. 1 / depth is linear on every plane, so that flat surfaces at any angle have no edge;
-    between two surfaces it is `1 - near / far`. Normals: the angle between neighbors. Ids: any difference. Lines run
-    between pixels.
+    between two surfaces it is `1 - near / far`. Normals: the angle between neighbors. Ids: any difference. Lines lie on
+    the borders between pixels.
     """
 
     aliases = (
@@ -26,7 +26,7 @@ class GeometryEdges(Filter):
         ProxyNote(("edges",), "its lines are narrower than two pixels of the proxy, and therefore fainter", "look"),
     )
 
-    depth = Field(0.0, doc="Distance from the camera.")
+    depth = Field(0.0, doc="Planar depth: the distance along the camera's axis.")
     normal = Vector(0.0, width=3, doc="Normals of surfaces.")
     ids = Field(0.0, doc="Numbers of objects or materials.")
     width: Annotated[

@@ -19,7 +19,7 @@ class NormalFromDepth(Filter):
         ProxyNote(("curvature", "normal"), "it compares neighboring pixels, which are farther apart in a proxy"),
     )
 
-    depth = Field(doc="Planar distance, along the viewing direction of the camera.")
+    depth = Field(doc="Planar depth: the distance along the camera's axis.")
     camera = CameraSocket(doc="The camera that the depth was rendered with.")
     reach: Annotated[
         float,

@@ -13,7 +13,7 @@ class PositionFromDepth(Filter):
         "reconstruct position", "points",
     )  # fmt: skip
 
-    depth = Field(doc="Planar distance, along the viewing direction of the camera.")
+    depth = Field(doc="Planar depth: the distance along the camera's axis.")
     camera = CameraSocket(doc="The camera that the depth was rendered with.")
 
     position = OutputSocket(Vector(width=3))

@@ -33,7 +33,7 @@ class RimLight(Filter):
 
     image = Image()
     normal = Vector(width=3, doc="Normals of surfaces.")
-    camera = CameraSocket(0.0, doc="Without one, normals are the camera's own: x right, y up, z towards it.")
+    camera = CameraSocket(0.0, doc="Without one, normals are the camera's own: x right, y up, z toward it.")
     mask = Field(
         1.0,
         doc="Where the light falls. Use it to exclude flat ground, which the camera sees at a "

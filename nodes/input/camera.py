@@ -18,14 +18,14 @@ class Camera(Filter):
     eye: Annotated[Place, Doc("The position of the camera.")] = (0.0, -5.0, 1.5)
     target: Annotated[Place, Doc("The point that the camera looks at.")] = (0.0, 0.0, 1.0)
     focal: Annotated[
-        float, Slider(8.0, 200.0, unit="ratio", minimum=0.1, maximum=10000.0, doc="Focal length in millimeters.")
+        float, Slider(8.0, 200.0, unit="mm", minimum=0.1, maximum=10000.0, doc="Focal length in millimeters.")
     ] = 50.0
     sensor: Annotated[
         float,
         Slider(
             4.0,
             70.0,
-            unit="ratio",
+            unit="mm",
             minimum=0.1,
             maximum=1e3,
             doc="Width of the sensor in millimeters, 36 for full frame.",

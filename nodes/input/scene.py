@@ -67,7 +67,12 @@ class Scene(Source):
     focal: Annotated[
         float,
         Slider(
-            12.0, 200.0, unit="ratio", minimum=1.0, maximum=10000.0, doc="Focal length in mm, on a sensor 36 mm wide."
+            12.0,
+            200.0,
+            unit="mm",
+            minimum=1.0,
+            maximum=10000.0,
+            doc="Focal length in millimeters, on a sensor 36 mm wide.",
         ),
     ] = 50.0
     orbit: Annotated[

@@ -20,7 +20,7 @@ class Wave(Pointwise):
         Dial("clockwise"),
     ] = 0.0
     phase: Annotated[
-        float, Slider(-1.0, 1.0, unit="ratio", doc="Moves the waves on, in wavelengths; key it to let them run.")
+        float, Slider(-1.0, 1.0, unit="ratio", doc="Moves the waves, in wavelengths; animate it to make them run.")
     ] = 0.0
     center: Annotated[Position, Doc("Where waves start.")] = (0.5, 0.5)
     distortion: Annotated[

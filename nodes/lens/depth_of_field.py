@@ -53,7 +53,7 @@ class DepthOfField(Filter):
     traits = (Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
 
     image = Image()
-    depth = Field(doc="Planar distance along the way the camera looks.")
+    depth = Field(doc="Planar depth: the distance along the camera's axis.")
     mask = Field(1.0, doc="How much of its blur each pixel gets, 0..1.")
     focus: Annotated[
         Literal["point", "distance"],
@@ -75,14 +75,14 @@ class DepthOfField(Filter):
         ),
     ] = 1.4
     focal: Annotated[
-        float, Slider(8.0, 300.0, unit="ratio", minimum=0.1, maximum=10000.0, doc="Focal length in millimeters.")
+        float, Slider(8.0, 300.0, unit="mm", minimum=0.1, maximum=10000.0, doc="Focal length in millimeters.")
     ] = 85.0
     sensor: Annotated[
         float,
         Slider(
             4.0,
             70.0,
-            unit="ratio",
+            unit="mm",
             minimum=0.1,
             maximum=1e3,
             doc="Width of the sensor in millimeters; full frame is 36.",

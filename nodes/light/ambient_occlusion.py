@@ -41,7 +41,7 @@ class AmbientOcclusion(Filter):
         ),
     )
 
-    depth = Field(doc="Planar distance along the way the camera looks.")
+    depth = Field(doc="Planar depth: the distance along the camera's axis.")
     normal = Vector(0.0, width=3, doc="In the world. Without a link, from depth.")
     camera = CameraSocket(doc="The camera that the depth was rendered with.")
     albedo = Image((0.5, 0.5, 0.5, 1.0), doc="Color of the surfaces, for the tint. Without a link, a mid gray.")
@@ -77,7 +77,7 @@ class AmbientOcclusion(Filter):
     ] = False
     quality: Annotated[
         Literal["preview", "quality", "reference"],
-        Doc("3 x 3, 4 x 8 or 16 x 16 slices and steps: 18, 64 or 512 points of depth to a pixel."),
+        Doc("3 x 3, 4 x 8 or 16 x 16 slices and steps: 18, 64 or 512 points of depth per pixel."),
     ] = "quality"
     resolution: Annotated[
         Literal["full", "half"],

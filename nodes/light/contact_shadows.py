@@ -19,7 +19,7 @@ from .._declare import (
 from ._march import surfaces
 
 _RAYS = {"preview": 1, "quality": 4, "reference": 32}
-"""Rays to a pixel where the light is a disc; their neighbors lend them as many times 16."""
+"""Rays per pixel where the light is a disc. The filter averages 4 x 4 pixels, so a pixel has 16 times as many."""
 
 
 class ContactShadows(Filter):
@@ -36,7 +36,7 @@ class ContactShadows(Filter):
     proxy_notes = (ProxyNote(("shadow",), "occlusion is computed from depth, which is not interpolated in a proxy"),)
 
     image = Image((1.0, 1.0, 1.0, 1.0), doc="The picture that is shaded. Without a link, white.")
-    depth = Field(doc="Planar distance along the way the camera looks.")
+    depth = Field(doc="Planar depth: the distance along the camera's axis.")
     normal = Vector(0.0, width=3, doc="In the world. Without a link, from depth.")
     camera = CameraSocket(doc="The camera that the depth was rendered with.")
     light: Annotated[Literal["sun", "lamp"], Doc("A sun has a direction, a lamp a position.")] = "sun"
@@ -78,7 +78,7 @@ class ContactShadows(Filter):
         0.0,
         0.8,
     )
-    quality: Annotated[Literal["preview", "quality", "reference"], Doc("1, 4 or 32 rays to a pixel.")] = "quality"
+    quality: Annotated[Literal["preview", "quality", "reference"], Doc("1, 4 or 32 rays per pixel.")] = "quality"
 
     out = OutputSocket(Image(doc="The picture with the shadows."))
     shadow = OutputSocket(Field(doc="1 where light arrives, 0 where none does."))

@@ -79,7 +79,7 @@ class DeferredLighting(Filter):
 
     albedo = Image((0.6, 0.6, 0.6, 1.0), doc="Color of the surfaces. Without a link, clay.")
     normal = Vector(0.0, width=3, doc="In the world. Without a link, from depth and camera.")
-    depth = Field(0.0, doc="Planar distance along the way the camera looks, if there is no position.")
+    depth = Field(0.0, doc="Planar depth: the distance along the camera's axis, if there is no position.")
     position = Vector(0.0, width=3, doc="In the world. Without a link, from depth and camera.")
     camera = CameraSocket(0.0, doc="Without one, highlights look as if every surface faced the camera.")
     material = Vector((0.0, 0.0), width=2, doc="Metal and roughness, 0..1, in place of the two values.")
@@ -137,7 +137,7 @@ class DeferredLighting(Filter):
             0.0, 10.0, unit="scene", minimum=0.0, doc="The distance at which their light has faded out; 0 for none."
         ),
     ] = 3.0
-    swarm_seed: Annotated[int, Slider(0, 100, unit="count", doc="Another number strews them otherwise.")] = 0
+    swarm_seed: Annotated[int, Slider(0, 100, unit="count", doc="Another number gives the lights other places.")] = 0
 
     out = OutputSocket()
     diffuse = OutputSocket(Image(doc="The diffuse light."))

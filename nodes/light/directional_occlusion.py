@@ -41,7 +41,7 @@ class DirectionalOcclusion(Filter):
     proxy_notes = (ProxyNote(("light",), "occlusion is computed from depth, which is not interpolated in a proxy"),)
 
     image = Image(doc="The lit scene, whose light bounces on to neighbors.")
-    depth = Field(doc="Planar distance along the way the camera looks.")
+    depth = Field(doc="Planar depth: the distance along the camera's axis.")
     normal = Vector(0.0, width=3, doc="In the world. Without a link, from depth.")
     camera = CameraSocket(doc="The camera that the depth was rendered with.")
     albedo = Image((1.0, 1.0, 1.0, 1.0), doc="Color of the surfaces. Without a link white: the light alone.")
@@ -72,7 +72,7 @@ class DirectionalOcclusion(Filter):
     up: Annotated[Literal["z", "y"], Doc("The axis of the world that points up: z in Blender, y in Maya.")] = "z"
     quality: Annotated[
         Literal["preview", "quality", "reference"],
-        Doc("3 x 3, 4 x 8 or 16 x 16 slices and steps: 18, 64 or 512 points of depth to a pixel."),
+        Doc("3 x 3, 4 x 8 or 16 x 16 slices and steps: 18, 64 or 512 points of depth per pixel."),
     ] = "quality"
     resolution: Annotated[
         Literal["full", "half"],

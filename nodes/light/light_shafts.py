@@ -25,7 +25,7 @@ class LightShafts(Filter):
     traits = (Trait.NEEDS_SCENE_LIGHT,)
 
     image = Image()
-    depth = Field(doc="Planar distance along the way the camera looks.")
+    depth = Field(doc="Planar depth: the distance along the camera's axis.")
     camera = CameraSocket(doc="The camera that the depth was rendered with.")
     light: Annotated[
         Literal["picture", "sun", "lamp"],

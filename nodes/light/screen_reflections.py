@@ -21,7 +21,7 @@ from ._denoise import LIGHT, SPREAD, denoise, prefilter
 from ._march import surfaces
 
 _RAYS = {"preview": 2, "quality": 8, "reference": 64}
-"""Rays to a pixel where surfaces are rough; their neighbors lend them as many times 16, and the filter more."""
+"""Rays per pixel where surfaces are rough. The 4 x 4 pixels around share their rays, and the filter joins more."""
 
 _STRIDES = (3, 6, 12)
 """Pixels between what the passes of the filter read."""
@@ -52,7 +52,7 @@ class ScreenReflections(Filter):
     )
 
     image = Image()
-    depth = Field(doc="Planar distance along the way the camera looks.")
+    depth = Field(doc="Planar depth: the distance along the camera's axis.")
     normal = Vector(0.0, width=3, doc="In the world. Without a link, from depth.")
     camera = CameraSocket(doc="The camera that the depth was rendered with.")
     material = Vector(0.0, width=2, doc="Metal and roughness, 0..1. Without a link, no metal, and the roughness below.")
@@ -99,7 +99,7 @@ class ScreenReflections(Filter):
     ] = 0.3
     sky: Annotated[bool, Doc("Reflect the background, as if it were infinitely far.")] = True
     quality: Annotated[
-        Literal["preview", "quality", "reference"], Doc("2, 8 or 64 rays to a pixel where surfaces are rough.")
+        Literal["preview", "quality", "reference"], Doc("2, 8 or 64 rays per pixel where surfaces are rough.")
     ] = "quality"
     steps: Annotated[
         int,

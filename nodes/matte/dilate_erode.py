@@ -7,7 +7,7 @@ from ._morphology import grow
 class DilateErode(Filter):
     """Grow a matte, or shrink it: every pixel becomes the largest or the smallest one around it.
 
-    This is grey morphology with a flat disc or square. A fraction of a pixel mixes the two nearest whole radii, so that
+    This is gray morphology with a flat disc or square. A fraction of a pixel mixes the two nearest whole radii, so that
     a soft edge moves by exactly the radius. It works on every channel by itself.
     """
 

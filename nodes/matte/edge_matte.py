@@ -14,10 +14,19 @@ class EdgeMatte(Filter):
     matte = Field(doc="A matte, 0..1.")
     width: Annotated[
         float,
-        Slider(0.25, 100.0, unit="px", minimum=0.0, maximum=2000.0, doc="How wide the edge is, where it is above 0.2."),
+        Slider(
+            0.25,
+            100.0,
+            unit="px",
+            minimum=0.0,
+            maximum=2000.0,
+            doc="Width of the edge: the part where the result is above 0.2.",
+        ),
     ] = 8.0
     side: Annotated[Literal["both", "inside", "outside"], Doc("Which side of the edge is seen.")] = "both"
-    gain: Annotated[float, Slider(0.0, 4.0, unit="ratio", minimum=0.0, doc="Factor before it is cut off at 1.")] = 1.0
+    gain: Annotated[
+        float, Slider(0.0, 4.0, unit="ratio", minimum=0.0, doc="Factor on the result, which is then limited to 1.")
+    ] = 1.0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
     out = OutputSocket(Field(doc="1 on the edge, 0 away from it."))

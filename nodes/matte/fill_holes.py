@@ -27,7 +27,8 @@ class FillHoles(Filter):
             unit="count",
             minimum=1,
             maximum=256,
-            doc="How winding ways out may be: twice as many corners are found. Parts with longer ways count as holes.",
+            doc="How winding a way out may be: it has at most about twice this many corners. Dark parts with more "
+            "winding ways are filled.",
         ),
     ] = 6
 

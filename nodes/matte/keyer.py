@@ -20,12 +20,12 @@ from ._morphology import grow
 
 
 class Keyer(Filter):
-    """Cut out a subject in front of a green or blue screen by color difference, with all that a real plate needs.
+    """Cut out a subject in front of a green or blue screen, with the corrections that real footage needs.
 
     How far the channel of the screen exceeds the others, relative to the screen at that pixel, is how much of the
-    screen is seen (Vlahos 1964). The matte is cut off below black and above white, made smaller and softer, and joined
-    with the mattes for the core and the garbage. Then the screen is subtracted, and its spill removed. `out` is the
-    subject, `matte` is its coverage.
+    screen is seen: the color difference (Vlahos 1964). The matte is cut off below black and above white, made smaller
+    and softer, and joined with the core and garbage mattes. Then the screen is subtracted, and its spill removed. `out`
+    is the subject, `matte` is its coverage.
     """
 
     aliases = (
@@ -58,8 +58,8 @@ class Keyer(Filter):
             unit="ratio",
             minimum=-1.0,
             maximum=8.0,
-            doc="Mattes above this become 1: solid subject. Above 1 for colors opposite to the screen, whose edges get "
-            "too solid.",
+            doc="Mattes above this become 1: solid subject. Raise it above 1 if edges of colors opposite to the screen "
+            "get too solid.",
         ),
     ] = 1.0
     shrink: Annotated[

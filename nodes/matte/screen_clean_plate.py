@@ -47,7 +47,14 @@ class ScreenCleanPlate(Filter):
     ] = 0.12
     inset: Annotated[
         float,
-        Slider(0.0, 50.0, unit="px", minimum=0.0, maximum=500.0, doc="How far from the subject the screen stays."),
+        Slider(
+            0.0,
+            50.0,
+            unit="px",
+            minimum=0.0,
+            maximum=500.0,
+            doc="How far from the subject pixels of the screen must be to stay.",
+        ),
     ] = 7.0
     smooth: Annotated[
         float,

@@ -21,9 +21,9 @@ class DepthMerge(Filter):
     proxy_notes = (ProxyNote(("depth",), "it takes the depth of one of two surfaces"),)
 
     a = Image(doc="A premultiplied picture.")
-    a_depth = Field(doc="Its depth.")
-    b = Image(doc="Another one.")
-    b_depth = Field(doc="The depth of the other one.")
+    a_depth = Field(doc="The depth of `a`.")
+    b = Image(doc="The other premultiplied picture.")
+    b_depth = Field(doc="The depth of `b`, in the same units.")
     antialias: Annotated[bool, Doc("Antialias the edges where surfaces cut through each other.")] = True
 
     out = OutputSocket(Image(doc="Both pictures."))

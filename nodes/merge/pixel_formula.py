@@ -24,9 +24,9 @@ class PixelFormula(Filter):
     d = Image(0.0)
     formula: Annotated[str, Doc("The formula.")] = "a"
     p: Annotated[float, Slider(0.0, 1.0, unit="ratio", doc="A number for the formula.")] = 0.0
-    q: Annotated[float, Slider(0.0, 1.0, unit="ratio", doc="Another one.")] = 0.0
-    r: Annotated[float, Slider(0.0, 1.0, unit="ratio", doc="A third one.")] = 0.0
-    s: Annotated[float, Slider(0.0, 1.0, unit="ratio", doc="A fourth one.")] = 0.0
+    q: Annotated[float, Slider(0.0, 1.0, unit="ratio", doc="A second number for the formula.")] = 0.0
+    r: Annotated[float, Slider(0.0, 1.0, unit="ratio", doc="A third number for the formula.")] = 0.0
+    s: Annotated[float, Slider(0.0, 1.0, unit="ratio", doc="A fourth number for the formula.")] = 0.0
 
     out = OutputSocket(Image(doc="The result as a picture."))
     value = OutputSocket(Field(doc="The result of a formula that makes a number; else its first channel."))

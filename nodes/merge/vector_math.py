@@ -36,4 +36,4 @@ class VectorMath(Pointwise):
 
     out = OutputSocket(Vector(doc="The vector."))
     dot = OutputSocket(Field(doc="The dot product of a and b, whatever the operation."))
-    length = OutputSocket(Field(doc="The length of the vector that comes out."))
+    length = OutputSocket(Field(doc="The length of `out`."))

@@ -8,7 +8,7 @@ class TvSnow(Pointwise):
 
     Every scan line is white noise, filtered by 1/4, 1/2, 1/4 along the line, because the band of a television channel
     is limited along lines and not across them. Hash: pcg3d (Jarzynski and Olano, 2020). Snow is part of the signal, so
-    that it is mixed with sRGB codes and not with light. Works on the color without its alpha; alpha stays.
+    that it is mixed with sRGB values and not with light. Works on the color without its alpha; alpha stays.
     """
 
     aliases = (

@@ -52,7 +52,7 @@ class EyeAdaptation(Temporal):
     compensation: Annotated[float, Slider(-4.0, 4.0, unit="EV", doc="Brighter or darker than adapted.")] = 0.0
 
     out = OutputSocket()
-    exposure = OutputSocket(Number(doc="In stops."))
+    exposure = OutputSocket(Number(doc="The exposure that is applied, in stops."))
     adapted = OutputSocket(Number(doc="The luminance to which the eye is adapted."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:

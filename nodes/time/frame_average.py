@@ -31,7 +31,7 @@ class FrameAverage(Filter):
     weights: Annotated[Shape, Doc("How the weights of the frames fall with their distance.")] = "box"
     window: Annotated[
         Literal["centered", "trailing"],
-        Doc("Centered: as many frames before this one as after it. Otherwise none after it."),
+        Doc("Centered: as many frames before this one as after it. Trailing: none after it."),
     ] = "centered"
 
     def identity(self) -> str | None:

@@ -19,7 +19,7 @@ class TimeOffset(Filter):
     image = Image((0.0, 0.0, 0.0, 0.0))
     field = Field(0.0)
     vector = Vector(0.0, width=4)
-    frames: Annotated[int, Slider(-24, 24, unit="count", doc="How many frames later.")] = 0
+    frames: Annotated[int, Slider(-24, 24, unit="count", doc="How many frames later; below 0 earlier.")] = 0
 
     out = OutputSocket(Image())
     field_out = OutputSocket(Field())

@@ -6,10 +6,10 @@ from .._declare import Doc, Fraction, Image, Pointwise, Slider, Trait
 class OverExposure(Pointwise):
     """Overexpose: the picture gets brighter, and highlights turn smoothly into white.
 
-    Light is doubled for every stop. The brightest channel p of a pixel is compressed from a share of white on, by
-    `start + (white - start) (1 - exp(-(p - start) / (white - start)))`; the others keep their ratio to it. The light
-    that is lost by that turns the color to white: by `x / (1 + x)`, where x is `bleach` times the lost light over
-    white. Works on the color without its alpha.
+    Light is doubled for every stop. The brightest channel p of a pixel is compressed above `start = white (1 -
+    shoulder)`, by `start + (white - start) (1 - exp(-(p - start) / (white - start)))`; the others keep their ratio to
+    it. The light that is lost by that turns the color to white: by `x / (1 + x)`, where x is `bleach` times the lost
+    light over white. Works on the color without its alpha.
     """
 
     aliases = ("blown highlights", "burn out", "highlight clipping", "blow out", "highlight rolloff")

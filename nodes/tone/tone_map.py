@@ -105,13 +105,23 @@ class ToneMap(Pointwise):
     q: Annotated[
         float,
         Slider(
-            0.1, 10.0, unit="ratio", minimum=1e-3, maximum=1e6, doc="Logarithmic: log(1 + q L) / log(1 + k maximum)."
+            0.1,
+            10.0,
+            unit="ratio",
+            minimum=1e-3,
+            maximum=1e6,
+            doc="Logarithmic: q in log(1 + q L) / log(1 + k maximum), for a luminance L. Higher is brighter.",
         ),
     ] = 1.0
     k: Annotated[
         float,
         Slider(
-            0.1, 10.0, unit="ratio", minimum=1e-3, maximum=1e6, doc="Logarithmic: above q darker, below q brighter."
+            0.1,
+            10.0,
+            unit="ratio",
+            minimum=1e-3,
+            maximum=1e6,
+            doc="Logarithmic: k in that formula. Above q the picture is darker, below q brighter.",
         ),
     ] = 1.0
     contrast: Annotated[

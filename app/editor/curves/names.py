@@ -140,7 +140,7 @@ class NameColumn:
         imgui.pop_font()
 
     def _draw_channels(self, frame: CurvesFrame, row: CurveRow, y: float) -> float:
-        """The letters of the channels in their colors; a hidden one is grey. Returns where they begin."""
+        """The letters of the channels in their colors; a hidden one is gray. Returns where they begin."""
         palette, start, scale = frame.context.palette, self._find_letters_start(frame, row), frame.scale
         assert row.port
         for channel, letter in enumerate(row.channels):

@@ -32,6 +32,7 @@ _UNITS: Mapping[str, tuple[Unit, float]] = MappingProxyType(
         "height": ("height", 1.0),
         "x": ("ratio", 1.0),
         "k": ("K", 1.0),
+        "mm": ("mm", 1.0),
     }
 )
 _WORDS: Mapping[str, str] = MappingProxyType(
@@ -45,6 +46,7 @@ _WORDS: Mapping[str, str] = MappingProxyType(
         "s": "seconds (s)",
         "scene": "scene units",
         "K": "kelvin (K)",
+        "mm": "millimeters (mm)",
     }
 )
 _FAULTS = (ZeroDivisionError, OverflowError)

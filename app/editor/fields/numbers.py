@@ -26,6 +26,7 @@ SUFFIX: Mapping[str | None, str] = MappingProxyType(
         "count": "",
         "scene": "",
         "K": "K",
+        "mm": "mm",
     }
 )
 """The suffix of a number, by unit."""
@@ -42,6 +43,7 @@ MEANING: Mapping[str | None, str] = MappingProxyType(
         None: "",
         "scene": "scene units",
         "K": "kelvin",
+        "mm": "millimeters",
     }
 )
 

@@ -145,8 +145,8 @@ def graph_entries() -> tuple[CatalogEntry, ...]:
     ends = [
         CatalogEntry(f"{side}:{kind}", f"{kind} {side}".lower(), GRAPH, doc)
         for side, doc in (
-            ("input", "What comes into the graph from outside."),
-            ("output", "What the graph gives to the outside."),
+            ("input", "The inputs of the graph: what comes from outside."),
+            ("output", "The outputs of the graph: what it gives to the outside."),
         )
         for kind in Kind
     ]
