@@ -1,7 +1,8 @@
 """Writes the passes of a graph as one HTML page: what each reads and makes, as pictures, its time and its GLSL.
 
-The page loads nothing and runs nothing: pictures are inside it, and it has no script. All that comes from a graph, such
-as the names of its nodes, is escaped.
+The page loads nothing and runs nothing: pictures are inside it, and it has no script. Several passes may read one
+picture, so each is in the page once, as an SVG image with an id, and figures show it by that id. All that comes from a
+graph, such as the names of its nodes, is escaped.
 """
 
 from __future__ import annotations
@@ -30,9 +31,10 @@ WIDTH = 320
 
 
 class Thumbnail(Struct, frozen=True):
-    """A small PNG of a surface, and what is black and white in it."""
+    """A small PNG of a surface, its width and height, and what is black and white in it."""
 
     png: bytes
+    size: tuple[int, int]
     span: tuple[float, float] | None
     """For data: the numbers that are shown black and white."""
 
@@ -51,7 +53,7 @@ class PassesPage(Struct):
     def add_pixels(self, pixels: Mapping[int, Array]) -> None:
         """Keep small pictures of surfaces, [height, width, channels], by their numbers."""
         for number, array in pixels.items():
-            self.thumbnails[number] = make_thumbnail(array, self.plan.surfaces[number], self.view)
+            self.thumbnails[number] = shrink_surface(array, self.plan.surfaces[number], self.view)
 
     def add_pass(self, trace: PassTrace) -> None:
         """Add the next pass that has run."""
@@ -66,6 +68,7 @@ class PassesPage(Struct):
             "TITLE": escape(self.title),
             "ABOUT": escape(self.about),
             "FACTS": "".join(f"<dt>{escape(name)}</dt><dd>{escape(fact)}</dd>" for name, fact in self._list_facts()),
+            "PICTURES": self._embed_pictures(),
             "SECTIONS": "\n".join((self._describe_uploads(), *map(self._describe_pass, range(len(self.plan.passes))))),
         }
         text = read_shipped_text("passes.html")
@@ -123,29 +126,47 @@ class PassesPage(Struct):
         surface, thumbnail = self.plan.surfaces[number], self.thumbnails.get(number)
         makers = [at for at, render_pass in enumerate(self.plan.passes) if number in render_pass.targets]
         target = f"pass-{makers[0]}" if makers else "files"
-        picture = span = ""
-        if thumbnail is not None:
-            encoded = b64encode(thumbnail.png).decode()
-            picture = f'<img src="data:image/png;base64,{encoded}" alt="{escape(label)}">'
-            span = f", {thumbnail.span[0]:.4g} is black, {thumbnail.span[1]:.4g} white" if thumbnail.span else ""
+        span = (
+            f", {thumbnail.span[0]:.4g} is black, {thumbnail.span[1]:.4g} white" if thumbnail and thumbnail.span else ""
+        )
         width, height = surface.size
         return (
-            f'<figure>{picture}<figcaption><a href="#{target}">#{number}</a> {escape(label)}<br>'
+            f'<figure>{self._draw_picture(number, label)}<figcaption><a href="#{target}">#{number}</a> {escape(label)}<br>'
             f"{width}x{height} {surface.texel}, {format_bytes(surface.nbytes)}, texture {surface.slot}{span}"
             "</figcaption></figure>"
         )
 
+    def _embed_pictures(self) -> str:
+        """All pictures, each once: figures show them by their ids."""
+        images = [
+            f'<image id="picture-{number}" width="{thumbnail.size[0]}" height="{thumbnail.size[1]}" '
+            f'href="data:image/png;base64,{b64encode(thumbnail.png).decode()}"/>'
+            for number, thumbnail in self.thumbnails.items()
+        ]
+        return "\n".join(images)
 
-def make_thumbnail(array: Array, surface: Surface, view: str) -> Thumbnail:
+    def _draw_picture(self, number: int, label: str) -> str:
+        thumbnail = self.thumbnails.get(number)
+        if thumbnail is None:
+            return ""
+        view_box = f"0 0 {thumbnail.size[0]} {thumbnail.size[1]}"
+        return (
+            f'<svg role="img" aria-label="{escape(label)}" viewBox="{view_box}"><use href="#picture-{number}"/></svg>'
+        )
+
+
+def shrink_surface(array: Array, surface: Surface, view: str) -> Thumbnail:
     """A small PNG of the pixels of a surface: light through a view, data from its least number to its largest."""
     if not surface.is_data and surface.channels == 4:
         small = shrink_to_fit(array, WIDTH, WIDTH)
-        return Thumbnail(encode_png(encode_for_viewing(StoredPart(small, ("R", "G", "B", "A"), False), view)), None)
+        picture = encode_for_viewing(StoredPart(small, ("R", "G", "B", "A"), False), view)
+        return Thumbnail(encode_png(picture), (small.shape[1], small.shape[0]), None)
     step = max(1, -(-array.shape[1] // WIDTH))
     small = np.ascontiguousarray(array[::step, ::step], np.float32)  # a mean of data lies on no surface
     finite = small[np.isfinite(small)]
     span = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
-    return Thumbnail(encode_png(encode_for_viewing(StoredPart(small, ("data",), False), "", span)), span)
+    picture = encode_for_viewing(StoredPart(small, ("data",), False), "", span)
+    return Thumbnail(encode_png(picture), (small.shape[1], small.shape[0]), span)
 
 
 def _describe_numbers(render_pass: Pass) -> str:

@@ -11,7 +11,7 @@ import OpenImageIO as oiio
 import pytest
 from halation.media import holds_light, write_picture
 from halation.media.comparison.data_range import find_data_range
-from halation.media.pictures.thumbnail import make_thumbnail
+from halation.media.pictures.thumbnail import read_thumbnail
 from halation.media.video.codecs import WRITABLE
 from halation.media.video.writer import VideoWriter
 from halation.nodes import Kind
@@ -97,7 +97,7 @@ def test_a_solid_matte_is_as_bright_where_it_is_looked_at(tmp_path):
         write_picture(
             tmp_path / "a.exr", {"Z": np.full((4, 4, 1), level)}, kinds={"Z": Kind.FIELD}, sandbox=UNRESTRICTED
         )
-        assert np.abs(make_thumbnail(tmp_path / "a.exr", 4, 4, UNRESTRICTED) - 255.0 * level).max() <= 0.5
+        assert np.abs(read_thumbnail(tmp_path / "a.exr", 4, 4, UNRESTRICTED) - 255.0 * level).max() <= 0.5
 
 
 def test_formats_that_hold_light():

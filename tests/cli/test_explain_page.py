@@ -57,13 +57,20 @@ class Page(HTMLParser):
 
 def pictures_of(page: Page) -> dict[str, list[np.ndarray]]:
     """The pictures by their labels."""
-    found: dict[str, list[np.ndarray]] = {}
+    stored = {
+        str(attributes["id"]): b64decode((attributes["href"] or "").removeprefix("data:image/png;base64,"))
+        for tag, attributes in page.elements
+        if tag == "image"
+    }
+    pictures: dict[str, list[np.ndarray]] = {}
+    label = ""
     for tag, attributes in page.elements:
-        if tag == "img":
-            data = b64decode((attributes["src"] or "").removeprefix("data:image/png;base64,"))
-            picture = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
-            found.setdefault(str(attributes["alt"]), []).append(picture)
-    return found
+        label = str(attributes.get("aria-label")) if tag == "svg" else label
+        if tag == "use":
+            png = stored[str(attributes["href"]).removeprefix("#")]
+            picture = cv2.imdecode(np.frombuffer(png, np.uint8), cv2.IMREAD_COLOR)
+            pictures.setdefault(label, []).append(picture)
+    return pictures
 
 
 @pytest.fixture
@@ -92,6 +99,19 @@ def test_passes_are_those_of_the_plan(cli, graphs, page):
     links = [attributes["href"] for tag, attributes in page.elements if tag == "a"]
     assert {str(link).removeprefix("#") for link in links} <= set(sections)
     assert page.open == []
+
+
+def test_a_picture_that_several_passes_read_is_in_the_page_once(page, tmp_path):
+    text = (tmp_path / "page.html").read_text("utf-8")
+    stored = re.findall(
+        r'<image id="([^"]+)" width="(\d+)" height="(\d+)" href="data:image/png;base64,([^"]+)"/>', text
+    )
+    uses = [str(attributes["href"]) for tag, attributes in page.elements if tag == "use"]
+    assert text.count("data:image/png") == len(stored) == len({number for number, *_ in stored}) < len(uses)
+    assert {f"#{number}" for number, *_ in stored} == set(uses)
+    for _, width, height, png in stored:
+        picture = cv2.imdecode(np.frombuffer(b64decode(png), np.uint8), cv2.IMREAD_UNCHANGED)
+        assert picture.shape[:2] == (int(height), int(width))
 
 
 def test_programs_can_be_copied_from_the_page(page, tmp_path):

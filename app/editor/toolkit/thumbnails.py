@@ -49,7 +49,7 @@ class FileThumbnails:
         self._decoded.close()
 
     def _load_or_make(self, key: tuple[Path, float]) -> Array | str:
-        from ...media.pictures.thumbnail import load_thumbnail, make_thumbnail, save_thumbnail
+        from ...media.pictures.thumbnail import load_thumbnail, read_thumbnail, save_thumbnail
 
         path, time = key
         name = hashlib.sha256(f"{path.absolute()}\n{time}".encode(errors="surrogatepass")).hexdigest()[:32]
@@ -57,7 +57,7 @@ class FileThumbnails:
         with contextlib.suppress(HalationError):
             return load_thumbnail(cached_file, sandbox=UNRESTRICTED)
         try:
-            pixels = make_thumbnail(path, WIDTH, HEIGHT, sandbox=self._sandbox)
+            pixels = read_thumbnail(path, WIDTH, HEIGHT, sandbox=self._sandbox)
         except HalationError as fault:
             return str(fault)
         except Exception as fault:

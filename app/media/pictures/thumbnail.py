@@ -19,7 +19,7 @@ from ..layers import find_layer
 from ..pixels import read_layer
 
 
-def make_thumbnail(path: str | Path, width: int, height: int, sandbox: Sandbox) -> Array:
+def read_thumbnail(path: str | Path, width: int, height: int, sandbox: Sandbox) -> Array:
     """The first color layer within `width` x `height` pixels over black, as [h, w, 3] of uint8, sRGB.
 
     Floating-point color is shown through the default view, encoded pictures are shown unchanged. The numbers of data

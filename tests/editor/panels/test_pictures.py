@@ -11,7 +11,7 @@ from halation.editor.toolkit.thumbnails import FileThumbnails
 from halation.errors import InputError
 from halation.media import write_picture
 from halation.media.pictures.file_endings import list_readable_endings
-from halation.media.pictures.thumbnail import load_thumbnail, make_thumbnail, save_thumbnail
+from halation.media.pictures.thumbnail import load_thumbnail, read_thumbnail, save_thumbnail
 from halation.nodes import Kind
 from halation.resources.sandbox import UNRESTRICTED
 
@@ -32,19 +32,19 @@ def ready(pictures: FileThumbnails, path: Path, at: float = 1.0):
 
 
 def test_a_thumbnail_keeps_the_shape_and_the_color(tmp_path: Path) -> None:
-    small = make_thumbnail(picture(tmp_path / "a.png", 0.2140), 64, 64, sandbox=UNRESTRICTED)
+    small = read_thumbnail(picture(tmp_path / "a.png", 0.2140), 64, 64, sandbox=UNRESTRICTED)
     assert small.shape == (16, 64, 3)
     assert np.abs(small.astype(int) - 128).max() <= 1
 
 
 def test_small_pictures_are_not_enlarged(tmp_path: Path) -> None:
-    assert make_thumbnail(picture(tmp_path / "a.png", 0.5, 8, 4), 64, 64, sandbox=UNRESTRICTED).shape == (4, 8, 3)
+    assert read_thumbnail(picture(tmp_path / "a.png", 0.5, 8, 4), 64, 64, sandbox=UNRESTRICTED).shape == (4, 8, 3)
 
 
 def test_light_is_seen_through_the_view(tmp_path: Path) -> None:
     """Light eight times as bright as white is still told from white."""
     bright, white = (
-        make_thumbnail(picture(tmp_path / f"{at}.exr", at), 64, 64, sandbox=UNRESTRICTED) for at in (8.0, 1.0)
+        read_thumbnail(picture(tmp_path / f"{at}.exr", at), 64, 64, sandbox=UNRESTRICTED) for at in (8.0, 1.0)
     )
     assert bright.mean() > white.mean() + 10
     assert white.mean() < 254
