@@ -131,7 +131,8 @@ class PassesPage(Struct):
         )
         width, height = surface.size
         return (
-            f'<figure>{self._draw_picture(number, label)}<figcaption><a href="#{target}">#{number}</a> {escape(label)}<br>'
+            f"<figure>{self._draw_picture(number, label)}"
+            f'<figcaption><a href="#{target}">#{number}</a> {escape(label)}<br>'
             f"{width}x{height} {surface.texel}, {format_bytes(surface.nbytes)}, texture {surface.slot}{span}"
             "</figcaption></figure>"
         )
