@@ -2,6 +2,12 @@
 
 Nodes are followed from the ports upwards, through links and the names in expressions, and into groups. The first
 picture of a graph without a size decides the size of all, so sources of pictures count as read there.
+
+`UpstreamHashes` of the compiler answers another question: which thumbnails an edit has made old, at every node at once.
+It could answer this one as well, but an edit is judged between two frames of the window, where a dragged value waits for
+it, and hashes take longer than comparing parts of immutable graphs, which are mostly the same objects: of a chain of 300
+nodes whose first one changes 5.5 ms instead of 1.3, with keys 12 instead of 0.5 (medians on a machine with four cores).
+Thumbnails are drawn when nothing else is left to do.
 """
 
 from __future__ import annotations
@@ -16,6 +22,8 @@ from ...graph.graph import Item
 
 def shows_same_pictures(before: Graph, after: Graph, ports: Collection[Port]) -> bool:
     """True if these ports, by the paths of their nodes, have the same pixels in both graphs in every frame."""
+    if before is after:
+        return True  # another frame of the same graph, as in playback
     return (before.settings, before.folder) == (after.settings, after.folder) and _has_same_parts(
         before, after, ports, has_size=after.settings.size is not None
     )

@@ -1,4 +1,8 @@
-"""One hash per node of everything upstream of it: it changes when anything that the node's picture depends on does."""
+"""One hash per node of everything upstream of it: it changes when anything that the node's picture depends on does.
+
+Thumbnails use it: one walk says for every node whether its picture is old, and an edit that is undone finds the hashes
+that it had. Animation counts as a whole, also that of other nodes.
+"""
 
 from __future__ import annotations
 
