@@ -34,10 +34,7 @@ if TYPE_CHECKING:
     from ..renderer.jobs.render_entry import RenderEntry
 
 
-_Output = Annotated[
-    list[str] | None,
-    Outputs,
-]
+_Output = Annotated[list[str] | None, Outputs]
 _Each = Annotated[
     list[str] | None,
     typer.Option(
@@ -144,19 +141,18 @@ def render(
         raise UsageError("--deterministic renders with fragment passes: leave out --form compute")
     if burn_in and node:
         raise UsageError("--burn-in writes over the outputs of the graph: leave out --node")
+    if each and str(graph) == "-" and "-" in each:
+        raise UsageError("GRAPH and --each cannot both be read from standard input: name a file for one of them")
+    if (path_map or priority or detach) and not cluster:
+        raise UsageError("--map, --priority and --detach are for a cluster: write --cluster ADDRESS too")
     from ..renderer.jobs.render_job import RenderJob
 
-    files, settings, destinations = (
-        parsing.parse_inputs(inputs),
-        parsing.parse_sets(sets),
-        parsing.parse_destinations(output or ()),
-    )
+    files, settings = parsing.parse_inputs(inputs), parsing.parse_sets(sets)
+    destinations = parsing.parse_destinations(output or ())
     entries: tuple[RenderEntry, ...] = ()
     if each:
         from .each import expand_entries, names_file
 
-        if str(graph) == "-" and "-" in each:
-            raise UsageError("GRAPH and --each cannot both be read from standard input: name a file for one of them")
         entries = expand_entries(each, files, settings, destinations, read_standard_input, sandbox)
         settings = {name: text for name, text in settings.items() if not names_file(text)}
         files, destinations = {}, ()
@@ -189,8 +185,6 @@ def render(
         sandbox=sandbox,
     )
     if not cluster:
-        if path_map or priority or detach:
-            raise UsageError("--map, --priority and --detach are for a cluster: write --cluster ADDRESS too")
         return execute(job, parsing.parse_progress(progress), as_json)
     from ..cluster.path_map import parse_path_map
     from .execute_cluster import ClusterOptions, execute_on_cluster
