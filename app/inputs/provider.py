@@ -8,12 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from halation.nodes import Kind
+from msgspec import Struct
 
 from ..compiler import find_named_files
 from ..errors import InputError, UsageError
 from ..graph import INPUTS, OUTPUTS, Graph, Input, find_key_range
 from ..graph.frames import is_video
 from ..media.layers import split_layer
+from ..resources.input_files import fingerprint
 from ..resources.picture import Picture
 from ..resources.provider import PictureProbe
 from ..resources.sandbox import Sandbox
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
     import numpy as np
     from halation.nodes import ColorChange, ColorSettings, Missing, Render, Scene, TextBlock, TypesetText
 
+    from ..color.management import ColorManager
     from ..media.layers import ImageInfo
     from ..resources.color_program import ColorProgram
     from ..resources.mesh import Mesh
@@ -35,6 +38,14 @@ if TYPE_CHECKING:
     Binding = str | Path | Array | float | tuple[float, ...]
     """What can be bound to a graph input: a path, `path:layer`, an array [h, w] or [h, w, c], the value of a Number or
     Color."""
+
+
+class _Encoding(Struct, frozen=True):
+    """The view that encodes the color of a file as the file has it, by its header and a color config."""
+
+    info: ImageInfo
+    manager: ColorManager
+    view: str | None
 
 
 class MediaProvider:
@@ -50,14 +61,17 @@ class MediaProvider:
         self.describer: Callable[[str, Mapping[str, str]], Render] | None = None
         """Replaces `read_render`, for callers that cannot wait for it."""
         self._infos: dict[str, ImageInfo] = {}
+        self._earlier_infos: dict[str, ImageInfo] = {}
+        """What the graph before read: a dragged value must not open every file again."""
         self._fingerprints: dict[str, str] = {}
-        self._encodings: dict[tuple[str, str, str, ColorSettings], str | None] = {}
+        self._encodings: dict[tuple[str, str, str, ColorSettings], _Encoding] = {}
+        self._earlier_encodings: dict[tuple[str, str, str, ColorSettings], _Encoding] = {}
 
     def bind(self, graph: Graph, inputs: Mapping[str, Binding]) -> dict[str, Picture]:
         """Pictures for graph inputs by name. Raises UsageError for a name that the graph does not have."""
         self._fingerprints = {}
-        self._infos.clear()
-        self._encodings.clear()
+        self._earlier_infos, self._infos = self._infos or self._earlier_infos, {}
+        self._earlier_encodings, self._encodings = self._encodings or self._earlier_encodings, {}
         bound = {name: self._bind_input(_find_input(graph, name), name, item) for name, item in inputs.items()}
         return bound | self._bind_siblings(graph, bound)
 
@@ -132,8 +146,8 @@ class MediaProvider:
             return ""
         key = (picture.path, picture.layer, picture.space, picture.color)
         if key not in self._encodings:
-            self._encodings[key] = self._find_encoding(picture)
-        return self._encodings[key]
+            self._encodings[key] = self._find_encoding(picture, self._earlier_encodings.get(key))
+        return self._encodings[key].view
 
     def load_pixels(self, picture: Picture) -> Array:
         """The pixels of a picture as [height, width, channels] of float16 or float32."""
@@ -212,24 +226,32 @@ class MediaProvider:
         return {name: str(getattr(content, "value", content)) for name, content in attributes.items()}
 
     def find_info(self, path: str) -> ImageInfo:
-        """A file's header, read once."""
+        """A file's header. It is read again if the file has changed since the graph before was bound."""
         if path not in self._infos:
-            from ..media.info import read_info
+            earlier = self._earlier_infos.get(path)
+            if earlier is None or earlier.fingerprint != fingerprint(path, self.sandbox):
+                from ..media.info import read_info
 
-            self._infos[path] = read_info(path, sandbox=self.sandbox)
+                earlier = read_info(path, sandbox=self.sandbox)
+            self._infos[path] = earlier
         return self._infos[path]
 
-    def _find_encoding(self, picture: Picture) -> str | None:
-        """The answer of `find_plain_view` for a file."""
+    def _find_encoding(self, picture: Picture, earlier: _Encoding | None) -> _Encoding:
+        """The answer of `find_plain_view` for a file; `earlier` holds if file and color config are still the same."""
         from ..color.management import get_color_manager
         from ..media.color_spaces import find_plain_view
         from .layer_choice import find_input_layer
 
-        layer = find_input_layer(self.find_info(picture.path), picture.layer, self.sandbox)
-        if layer.is_data:
-            return None
-        manager = get_color_manager(picture.color, self.sandbox)
-        return find_plain_view(picture.path, layer, manager, picture.space, sandbox=self.sandbox)
+        info, manager = self.find_info(picture.path), get_color_manager(picture.color, self.sandbox)
+        if earlier is not None and earlier.info is info and earlier.manager is manager:
+            return earlier
+        layer = find_input_layer(info, picture.layer, self.sandbox)
+        view = (
+            None
+            if layer.is_data
+            else find_plain_view(picture.path, layer, manager, picture.space, sandbox=self.sandbox)
+        )
+        return _Encoding(info, manager, view)
 
     def _bind_siblings(self, graph: Graph, bound: Mapping[str, Picture]) -> dict[str, Picture]:
         """Inputs whose default is another layer of a replaced file follow it to the new file.

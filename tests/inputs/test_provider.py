@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import cv2
 import numpy as np
+import OpenImageIO as oiio
 import pytest
 from halation import media
 from halation.errors import InputError, UsageError
@@ -10,6 +14,7 @@ from halation.graph import Graph, Input
 from halation.inputs.provider import MediaProvider
 from halation.nodes import Kind
 from halation.resources.sandbox import UNRESTRICTED
+from house_config import write_house
 
 GRAPH = Graph(
     inputs={
@@ -128,3 +133,47 @@ def test_a_plain_picture_is_what_the_user_binds_it_to(tmp_path):
     follower = pictures.bind(ROLES, {"beauty": path})["albedo"]
     with pytest.raises(InputError, match="has no layer 'Diffuse Color'"):
         pictures.probe_picture(follower)
+
+
+# --- a graph that is edited -----------------------------------------------------------------------------------------
+
+
+def look_at(pictures: MediaProvider, graph: Graph, path: str) -> tuple[tuple[int, int], str | None]:
+    """The size of a file and the view that encodes it, as a plan asks for them."""
+    picture = pictures.bind(graph, {"image": path})["image"]
+    return pictures.probe_picture(picture).size, pictures.find_plain_view(picture)
+
+
+def test_an_edit_opens_no_file_again(tmp_path, monkeypatch):
+    path = str(tmp_path / "a.png")
+    cv2.imwrite(path, np.zeros((4, 6, 3), np.uint8))
+    graph, pictures = Graph(inputs={"image": Input()}), MediaProvider(sandbox=UNRESTRICTED)
+    assert look_at(pictures, graph, path) == ((6, 4), "none")
+    opened: list[str] = []
+    open_file = oiio.ImageInput.open
+    monkeypatch.setattr(oiio.ImageInput, "open", lambda *names: opened.append(str(names[0])) or open_file(*names))
+    for _ in range(3):
+        assert look_at(pictures, graph, path) == ((6, 4), "none")
+    assert opened == []
+
+
+def test_a_file_that_is_written_again_is_read_again(tmp_path):
+    path = str(tmp_path / "a.png")
+    cv2.imwrite(path, np.zeros((4, 6, 3), np.uint8))
+    graph, pictures = Graph(inputs={"image": Input()}), MediaProvider(sandbox=UNRESTRICTED)
+    assert look_at(pictures, graph, path) == ((6, 4), "none")
+    cv2.imwrite(path, np.zeros((5, 9, 3), np.uint8))
+    assert look_at(pictures, graph, path) == ((9, 5), "none")
+    Path(path).unlink()
+    with pytest.raises(InputError, match="there is no such file"):
+        look_at(pictures, graph, path)
+
+
+def test_another_config_encodes_a_file_in_another_way(tmp_path, monkeypatch):
+    """Its rule for plates says that such files hold a logarithm of the light of a scene."""
+    path = str(tmp_path / "plates.png")
+    cv2.imwrite(path, np.zeros((4, 6, 3), np.uint8))
+    graph, pictures = Graph(inputs={"image": Input()}), MediaProvider(sandbox=UNRESTRICTED)
+    assert look_at(pictures, graph, path)[1] == "none"
+    monkeypatch.setenv("OCIO", str(write_house(tmp_path)))
+    assert look_at(pictures, graph, path)[1] == ""
