@@ -17,7 +17,7 @@ from . import bodies, forms
 from .external import write_external
 from .includes import include_files
 from .names import ShaderNames
-from .pass_parts import PassContext, write_parts
+from .pass_parts import PassContext, write_pass_parts
 from .rasterize import write_raster
 
 
@@ -63,7 +63,7 @@ def _emit_root(root: Op, request: _PassRequest) -> EmittedProgram:
     names = ShaderNames(program, {ref: number for number, ref in enumerate(group.reads)}, target.form, by_image)
     _name_windows(names, group)
     context = PassContext(program, group, names, request.library)
-    parts = write_parts(context)
+    parts = write_pass_parts(context.root, context)
     early, late, files, uniforms = include_files(context, parts)
     names.uniform("ivec2", root.size, "grid")
     if "proxy" in uniforms:

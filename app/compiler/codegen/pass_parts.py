@@ -79,17 +79,13 @@ class PassParts(Struct, frozen=True):
     convolution: Convolve | None = None
 
 
-def write_parts(context: PassContext) -> PassParts:
-    """The pieces of a pass's text."""
-    return _write_root(context.root, context)
-
-
 @singledispatch
-def _write_root(root: Op, context: PassContext) -> PassParts:
+def write_pass_parts(root: Op, context: PassContext) -> PassParts:
+    """The pieces of a pass's text, by the operation in which the pass ends."""
     raise NotImplementedError(f"no pass ends in {type(root).__name__}")
 
 
-@_write_root.register
+@write_pass_parts.register
 def _(root: Call, context: PassContext) -> PassParts:
     inlined = tuple(_find_inlined(context))
     functions = [
@@ -103,7 +99,7 @@ def _(root: Call, context: PassContext) -> PassParts:
     return PassParts(shaders, functions, body, [values[ref] for ref in context.group.writes], inlined=inlined)
 
 
-@_write_root.register
+@write_pass_parts.register
 def _(root: Reduce, context: PassContext) -> PassParts:
     body, values = _write_calls(context)
     functions = bodies.write_source(context.names, root, body, values[root.image]) + bodies.write_reduction(
@@ -112,7 +108,7 @@ def _(root: Reduce, context: PassContext) -> PassParts:
     return PassParts(_pointwise_files(context), functions, [], ["reduced(pixel)"])
 
 
-@_write_root.register
+@write_pass_parts.register
 def _(root: Convolve, context: PassContext) -> PassParts:
     names = context.names
     functions, body = bodies.write_convolution_accessor(names, root), list[str]()
@@ -123,7 +119,7 @@ def _(root: Convolve, context: PassContext) -> PassParts:
     return PassParts([EDGES], functions, body, ["convolved"], convolution=root)
 
 
-@_write_root.register
+@write_pass_parts.register
 def _(root: Gather, context: PassContext) -> PassParts:
     names = context.names
     functions = [line for item in root.accessors for line in bodies.write_accessor(names, item, root.edge)]

@@ -11,7 +11,7 @@ from msgspec import field
 from ...glsl import GlslText, words
 from ..codegen.includes import find_macros, select_texts, split_by_accessors
 from ..codegen.names import ShaderNames, convert
-from ..codegen.pass_parts import PassContext, PassParts, write_parts
+from ..codegen.pass_parts import PassContext, PassParts, write_pass_parts
 from ..fusion.fuse import PassGroup
 from ..ir import ExternalProgram, HostCall, LoweredProgram, Op, Raster, Ref, UniformConstant
 from ..library import Library
@@ -106,7 +106,7 @@ def write_function(
     because all passes share one text.
     """
     context = PassContext(program, fused, names, library)
-    parts = write_parts(context)
+    parts = write_pass_parts(context.root, context)
     functions = list(parts.functions)
     if parts.convolution:
         functions[0] = f"float weight(int j) {{ {_write_weight(parts.convolution.weights, 0)} }}"
