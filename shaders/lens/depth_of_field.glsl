@@ -7,7 +7,9 @@
 const float depth_of_field_least = 0.5;    // a disc of this radius covers its own pixel only
 const float depth_of_field_seam = 0.85;    // share of a level's largest radius at which its crossfade begins
 const float depth_of_field_slack = 1.015;  // discs of square pixels do not have exactly the area of discs
-const float depth_of_field_unseen = 0.05;  // weight of guessed light, relative to light that is visible
+// The weight of guessed light, relative to light that is visible. A choice: with half or twice the number, under 1 % of
+// the pixels of the preset shallow_focus change by more than 1 / 255.
+const float depth_of_field_unseen = 0.05;
 
 // --- circles of confusion ---
 

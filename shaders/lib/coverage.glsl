@@ -10,7 +10,9 @@
 
 const int COVERAGE_REACH = 2;           // pixels: how far away a surface is looked for
 const ivec2 COVERAGE_SELF = ivec2(0);   // the offset of the pixel itself
-const float COVERAGE_WHOLE = 0.998;     // shorter normals may be means; curved surfaces shorten normals a little too
+// Half and twice each of the numbers that have no other reason changes less than 1 % of the pixels that the node
+// screen_reflections makes of the sample frame by more than 1 / 255: they are choices.
+const float COVERAGE_WHOLE = 0.998;     // shorter normals may be means: this one of two that are 7 degrees apart
 const float COVERAGE_NOTHING = 0.004;   // a normal of one sample among 256
 const float COVERAGE_LACK = 0.03;       // a pixel of which another surface covers so much counts as wholly in one
 const float COVERAGE_IMPURE = 100.0;    // weight of a lack in length against squared pixels: 0.98 is 1.4 pixels away

@@ -3,8 +3,10 @@
 
 const float GEOMETRY_FAR = 1e9;       // larger depths are background, which renderers write as 1e10 or infinity
 const float GEOMETRY_NOTHING = 1e10;  // the depth that nodes write for the background
-const float GEOMETRY_LEAST = 0.1;     // shorter normals count as background
-const float GEOMETRY_WHOLE = 0.98;    // shorter normals are averages of several surfaces (antialiasing)
+// Shorter normals count as background. On the sample frame no pixel differs with 0.05.
+const float GEOMETRY_LEAST = 0.1;
+// Shorter normals are averages of several surfaces (antialiasing): 0.98 is the mean of two that are 23 degrees apart.
+const float GEOMETRY_WHOLE = 0.98;
 
 // True for the depth of a surface; false for the background, NaN and infinity.
 bool is_surface(float depth) { return is_finite(depth) && depth > 0.0 && depth < GEOMETRY_FAR; }

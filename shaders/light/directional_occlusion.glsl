@@ -7,10 +7,15 @@
 #include "lib/occlusion.glsl"
 #include "lib/prefiltered_near.glsl"
 
-const int DIRECTIONAL_OCCLUSION_PARTS = 4;  // parts of the hidden light on each side of a slice
+// Parts of the hidden light on each side of a slice. With 8, 1 % of the pixels of the preset sky_bounce change by more
+// than 1 / 255; with 2, 4 %.
+const int DIRECTIONAL_OCCLUSION_PARTS = 4;
 const float DIRECTIONAL_OCCLUSION_FOOTPRINT = 0.2;  // of the width of a sample: how wide the mean is that it takes
-const float DIRECTIONAL_OCCLUSION_AROUND = 64.0;    // pixels: the surroundings with which a lamp is compared
-const float DIRECTIONAL_OCCLUSION_LAMP = 2.0;       // what is so many times as bright as these is a lamp
+// Pixels: the surroundings with which a lamp is compared. A choice: with 32, 3 % of the pixels of the node on the sample
+// frame change by more than 1 / 255.
+const float DIRECTIONAL_OCCLUSION_AROUND = 64.0;
+// What is so many times as bright as these is a lamp. A choice: with 1 or 4, 5 % of those pixels change so.
+const float DIRECTIONAL_OCCLUSION_LAMP = 2.0;
 const float DIRECTIONAL_OCCLUSION_BLUR = 0.25;      // of the radius: how far the filter may look
 const float DIRECTIONAL_OCCLUSION_BRIGHTEST = 65504.0;  // the largest half float: more could overflow in sums
 
