@@ -15,7 +15,10 @@ T = TypeVar("T")
 Level = Literal["info", "warning", "error"]
 
 KEPT = 500
+"""Messages that are kept. A choice: more than a user reads."""
+
 TOAST_SECONDS = 6.0
+"""Seconds for which a message stays over the window. A choice: long enough for two lines."""
 
 
 @dataclass(frozen=True)

@@ -23,8 +23,8 @@ from .recovery.file_locks import hold_lock
 MAX_RECENT = 20
 MAX_SCALE = 3.0
 MIN_SCALE = 0.75
-
 MAX_SWATCHES = 24
+"""Recent files, the range of the interface's scale, and colors that a user keeps: choices of design."""
 
 SwatchColor = tuple[float, float, float, float]
 """A scene-linear color with its alpha."""

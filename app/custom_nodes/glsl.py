@@ -31,6 +31,7 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _RESERVED = frozenset({"pixel", "extent", "frame", "proxy", "grid"})
 """Names that code can use without declaring them."""
 MAX_CLASSES = 512
+"""Classes of code that are kept, as many as programs: hours of typing in the editor."""
 
 
 class _Parameter(Struct, frozen=True):

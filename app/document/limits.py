@@ -6,16 +6,14 @@ MAX_BYTES = 32 * 2**20
 """Bytes of a file. Chosen by judgement: 100,000 nodes with their values and links take less."""
 
 MAX_NESTING = 64
-"""Objects and lists inside each other."""
+"""Objects and lists inside each other. A choice: a field of a light lies seven deep, and each group in place
+adds three."""
 
 MAX_PARTS = 1_500_000
 """Objects, lists and their entries in a file: fifteen for each of 100,000 nodes, which take about nine."""
 
 MAX_KEY = 1000
 """Characters of a key: the names of nodes and sockets, and paths of links. Messages repeat them."""
-
-MAX_GROUPS = 32
-"""Groups inside each other."""
 
 MAX_NODES = 100_000
 """Nodes after every group is expanded: a few files that hold each other twice would otherwise make billions."""

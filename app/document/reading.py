@@ -31,6 +31,7 @@ from ..errors import DocumentError, GraphError
 from ..graph import Animation, Control, Graph, Group, Input, Item, Output, Port, Settings, Unknown, signature
 from ..graph.animation import adapt_animation
 from ..graph.graph import find_setting
+from ..graph.model import MAX_GROUP_DEPTH
 from ..graph.named_items import find_item_faults, split_unknown
 from ..graph.names import did_you_mean, name_fault
 from ..graph.values import coerce, describe_type
@@ -351,8 +352,8 @@ class _BodyReader(Struct):
         """A group, and how many nodes it has when groups are expanded."""
         record = convert(raw, records.GroupRecord, self.file, at)
         self.keep_unknown(f"nodes.{id}", raw, records.GroupRecord)
-        if depth > limits.MAX_GROUPS:
-            raise DocumentError(self.file, at, f"groups nest deeper than {limits.MAX_GROUPS}; flatten some of them")
+        if depth > MAX_GROUP_DEPTH:
+            raise DocumentError(self.file, at, f"groups nest deeper than {MAX_GROUP_DEPTH}; flatten some of them")
         if (record.graph is None) == (not record.path):
             raise DocumentError(self.file, at, 'a group needs either "graph", its body, or "path", the file of one')
         if record.path:

@@ -23,7 +23,8 @@ MOST_ROUNDS = 60_000
 """Rounds that all counted loops may make for a pixel, together. Mesa's rasterizer leaves any loop after 65535."""
 
 MOST_STATED = 1 << 20
-"""Rounds up to which a loop, with the loops around it, is believed that says how many it makes."""
+"""Rounds up to which a loop, with the loops around it, is believed that says how many it makes. A choice: a pixel with
+a million rounds takes milliseconds."""
 
 _LOOP = re.compile(r"\b(for|while|do)\b")
 _DIRECTIVE = re.compile(r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*", re.MULTILINE)

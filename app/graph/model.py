@@ -16,6 +16,10 @@ from ..errors import GraphError
 from .conversion import make_socket
 from .names import did_you_mean
 
+MAX_GROUP_DEPTH = 32
+"""Groups inside groups. Chosen by judgement: graphs in use nest two or three deep. A file can name itself as the body
+of a group, and then this limit ends the expansion."""
+
 
 class Port(Struct, frozen=True, order=True):
     """One end of a link, written `bloom.image`. The nodes `inputs` and `outputs` are the ends of the graph.

@@ -16,7 +16,7 @@ from ..resources.record import Record
 from . import rules
 from .evaluate_at_frame import animation_fault, find_expression_loops
 from .graph import Graph, Group, Item, find_setting, signature
-from .model import Input, Port, Unknown
+from .model import MAX_GROUP_DEPTH, Input, Port, Unknown
 from .named_items import find_item_faults
 from .names import INPUTS, OUTPUTS, did_you_mean, limit_suggestions, name_fault, pick
 from .rules import Rule, Severity
@@ -30,8 +30,6 @@ _REQUIREMENT = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*==[A-Za-z0-9][A-Za-z0-9.+!
 CONTROLS = "controls"
 """The `node` of a problem with a control."""
 
-MAX_DEPTH = 32
-"""How deep groups may nest."""
 
 _FILE_KEYS = ("inputs", "outputs", "controls", "nodes", "links", "settings", "animation", "ui")
 _NODE_KEYS = ("type", "version", "values", "muted", "code", "file", "path", "graph", "package")
@@ -182,8 +180,8 @@ def _animations(graph: Graph) -> Iterator[Problem]:
 
 
 def _group(id: str, item: Group, node_types: Mapping[str, type[Node]], depth: int) -> Iterator[Problem]:
-    if depth == MAX_DEPTH:
-        sentence = f"group '{id}': groups nest deeper than {MAX_DEPTH}; flatten some of them"
+    if depth == MAX_GROUP_DEPTH:
+        sentence = f"group '{id}': groups nest deeper than {MAX_GROUP_DEPTH}; flatten some of them"
         yield Problem(id, "", sentence, rules.DEEP_GROUPS)
         return
     for problem in _inside(item.graph, node_types, depth + 1):

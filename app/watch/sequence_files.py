@@ -10,10 +10,10 @@ from ..media.sequences import find_frame_file, find_sequence, suggest_pattern
 from ..resources.sandbox import Sandbox
 
 MOST = 400
-"""Files of one sequence that are watched."""
+"""Files of one sequence that are watched. A choice: to ask for the state of so many takes a few milliseconds."""
 
 AFTER = 24
-"""Frames after the last one that are waited for."""
+"""Frames after the last one that are waited for: a second of what a renderer writes. A choice."""
 
 
 def representative_file(path: Path, frame: int = 1, *, sandbox: Sandbox) -> Path:

@@ -6,9 +6,9 @@
 #include "lib/geometry.glsl"
 
 const int MARCH_LEVELS = 3;
-// Rays start in front of the surface by this part of the depth: half floats, which many renders hold, round depth by a
-// half of 1e-3. A choice between surfaces that shade themselves and gaps at contacts: half or twice the number changes
-// up to 3 % of the pixels of contact_shadows on the sample frame by more than 1 / 255.
+// Rays start in front of the surface by this part of the depth: a choice between surfaces that shade themselves and gaps
+// at contacts. Half or twice the number changes up to 3 % of the pixels of contact_shadows on the sample frame by more
+// than 1 / 255.
 const float MARCH_LIFT = 1e-4;
 const float MARCH_NUDGE = 1e-3;    // pixels: a step beyond a border, into the next cell
 // Pixels: how far a ray moves into an object after it met its edge, whose pixels mix two surfaces. The preset wet_floor

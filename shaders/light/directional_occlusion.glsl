@@ -11,8 +11,8 @@
 // than 1 / 255; with 2, 4 %.
 const int DIRECTIONAL_OCCLUSION_PARTS = 4;
 const float DIRECTIONAL_OCCLUSION_FOOTPRINT = 0.2;  // of the width of a sample: how wide the mean is that it takes
-// Pixels: the surroundings with which a lamp is compared. A choice: with 32, 3 % of the pixels of the node on the sample
-// frame change by more than 1 / 255.
+// Pixels: the surroundings with which a lamp is compared. A choice: with 32, 3 % of the pixels of the node on the
+// sample frame change by more than 1 / 255.
 const float DIRECTIONAL_OCCLUSION_AROUND = 64.0;
 // What is so many times as bright as these is a lamp. A choice: with 1 or 4, 5 % of those pixels change so.
 const float DIRECTIONAL_OCCLUSION_LAMP = 2.0;

@@ -15,6 +15,7 @@ import pytest
 from halation.document import FORMAT, dumps, limits, load, loads, save
 from halation.errors import DocumentError, OutputError
 from halation.graph import Graph, Group
+from halation.graph.model import MAX_GROUP_DEPTH
 from halation.resources.sandbox import UNRESTRICTED
 from toy_nodes import TOYS, Gain, small
 
@@ -169,9 +170,9 @@ class TestGroupFiles:
                 write(tmp_path / f"{number}.json", nodes={"g": group(f"{number - 1}.json")})
             return tmp_path / f"{count}.json"
 
-        load(files(limits.MAX_GROUPS), TOYS, sandbox=UNRESTRICTED)
+        load(files(MAX_GROUP_DEPTH), TOYS, sandbox=UNRESTRICTED)
         with pytest.raises(DocumentError, match="groups nest deeper than 32"):
-            load(files(limits.MAX_GROUPS + 1), TOYS, sandbox=UNRESTRICTED)
+            load(files(MAX_GROUP_DEPTH + 1), TOYS, sandbox=UNRESTRICTED)
 
     def test_a_file_is_read_once_and_bombs_are_refused(self, tmp_path: Path) -> None:
         """Twenty files that each hold the one before twice stand for a million nodes."""

@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from ...document import limits
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Port, signature
+from ...graph.model import MAX_GROUP_DEPTH
 from ...graph.notes import move_layout
 from . import timing
 from .routes import tidy_routes
@@ -93,9 +93,8 @@ def check_depth(graph: Graph) -> None:
         body, depth = todo.pop()
         for id, item in body.nodes.items():
             if isinstance(item, Group):
-                if depth >= limits.MAX_GROUPS:
-                    most = limits.MAX_GROUPS
-                    raise GraphError(f"group '{id}' would be nested deeper than {most}: ungroup some groups")
+                if depth >= MAX_GROUP_DEPTH:
+                    raise GraphError(f"group '{id}' would be nested deeper than {MAX_GROUP_DEPTH}: ungroup some groups")
                 todo.append((item.graph, depth + 1))
 
 

@@ -14,6 +14,7 @@ from itertools import pairwise
 from ...graph.walk import sort_topologically
 
 _SWEEPS = 8
+"""Sweeps over the layers that reduce crossings. A choice: the best order so far is kept, and few sweeps improve it."""
 
 Link = tuple[str, str]
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ...compiler import Pass, Plan
 
 MOST_SECONDS = 4096
-"""The most passes whose times are remembered."""
+"""The most passes whose times are remembered. A choice."""
 
 
 @dataclass(frozen=True)

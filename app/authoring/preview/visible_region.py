@@ -20,7 +20,8 @@ MARGIN = 1 / 16
 """The margin beyond each edge, as a fraction of the visible region: small moves of the view need nothing new."""
 
 GRID = 16
-"""Pixels: the least margin, and the grid to which regions are rounded."""
+"""Pixels: the least margin, and the grid to which regions are rounded, so that a view that is moved makes few plans. A
+choice."""
 
 LARGEST = 0.5
 """The fraction of a picture above which the whole is computed at once: a part would save little."""

@@ -13,11 +13,8 @@ from ...custom_nodes import CustomNode
 from ...errors import GraphError
 from ...glsl import GlslText
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Input, Port, Unknown, conversion
+from ...graph.model import MAX_GROUP_DEPTH
 from ...graph.names import pick
-
-MAX_DEPTH = 32
-"""Groups inside groups. Chosen by judgement: graphs in use nest two or three deep. A file can name itself as the body
-of a group, and then this limit ends the expansion."""
 
 
 class FlatGraph(Struct):
@@ -92,9 +89,9 @@ def expand(graph: Graph) -> FlatGraph:
     todo: list[tuple[str, Graph, Mapping[str, Any]]] = [("", graph, {})]
     while todo:
         prefix, body, values = todo.pop()
-        if prefix.count("/") > MAX_DEPTH:
+        if prefix.count("/") > MAX_GROUP_DEPTH:
             group = prefix.rstrip("/")
-            fault = f"group '{group}': groups nest deeper than {MAX_DEPTH}; flatten some of them"
+            fault = f"group '{group}': groups nest deeper than {MAX_GROUP_DEPTH}; flatten some of them"
             raise GraphError(fault, node=group)
         body = _set_controls(body, values)
         flat.folders[prefix] = body.folder

@@ -16,6 +16,7 @@ from .sizes import SizeError, SizeFormula, read_size
 
 MAX_INPUTS = 256
 MAX_PASSES = 64
+"""Choices, so that a hostile head costs little."""
 TYPES = ("event", "bool", "long", "float", "point2D", "color", "image", "audio", "audioFFT")
 PICTURES = ("image", "audio", "audioFFT")
 

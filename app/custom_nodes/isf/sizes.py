@@ -11,6 +11,7 @@ from types import MappingProxyType
 
 MAX_LENGTH = 1000
 MAX_DEPTH = 50
+"""Letters and nested brackets of a formula: far more than sizes need. A choice, so that reading never runs deep."""
 
 SizeEvaluator = Callable[[Mapping[str, float]], float]
 

@@ -18,7 +18,7 @@ FIRST_STEPS = 3
 """Steps between the first samples of a knob; where numbers bend or passes change, samples between follow."""
 
 DENSE_STEPS = 8
-"""Whole numbers up to which each is sampled."""
+"""Whole numbers up to which each is sampled. A choice."""
 
 SMALLEST_STEP = 1 / 128
 """The smallest step between samples, as a part of the range: two steps of a slider of 256 pixels."""
@@ -28,7 +28,7 @@ BEND = 2e-3
 step of 8 bits for what scales a color."""
 
 BESIDE = 1e-4
-"""How far beside a special value a sample is taken, as a part of the range."""
+"""How far beside a special value a sample is taken, as a part of the range: less than any slider moves. A choice."""
 
 Array = np.ndarray
 LoadFunction = Callable[[Picture], Array]
