@@ -128,7 +128,14 @@ def _examine_memory() -> MachineCheck:
 
 def _examine_folders() -> Iterator[MachineCheck]:
     """Folders that are written to, with the space on their disks, and folders of presets."""
-    for topic, folder in (("temporary files", Path(tempfile.gettempdir())), ("preferences", state_folder())):
+    from ..renderer.calibration import timings_folder
+
+    places = {
+        "temporary files": Path(tempfile.gettempdir()),
+        "preferences": state_folder(),
+        "measured times": timings_folder(),
+    }
+    for topic, folder in places.items():
         yield _examine_folder(topic, folder)
     own, *shared = list_preset_folders()
     yield _examine_folder("own presets", own)

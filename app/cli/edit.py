@@ -23,8 +23,24 @@ def edit(
         ),
     ] = None,
     inputs: Inputs = None,
+    show_errors: Annotated[
+        bool, typer.Option("--show-errors", hidden=True, help="Show an error in a window: a menu has no terminal.")
+    ] = False,
 ) -> int:
     """Open the editor."""
+    from ..errors import HalationError
+
+    try:
+        return _open_editor(graph, inputs)
+    except HalationError as fault:
+        if show_errors:
+            from ..desktop import show_error
+
+            show_error(str(fault))
+        raise
+
+
+def _open_editor(graph: Path | None, inputs: list[str] | None) -> int:
     from ..errors import UsageError
 
     if graph is None and inputs:

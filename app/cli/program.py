@@ -44,8 +44,9 @@ _VISIBLE = (
     "bench",
     "export",
     "doctor",
+    "desktop",
 )
-_HIDDEN = ("export-isf", "git-driver", "worker")
+_HIDDEN = ("export-isf", "git-driver", "thumbnail", "worker")
 _LEAST_MEMORY = 288 << 20
 """Bytes of address space. Libraries of pictures and colors end the process, or wait for ever, where they cannot be
 loaded and started in it: measured on Linux with four cores."""
@@ -58,6 +59,8 @@ WITHOUT_ROOT = MappingProxyType(
         "schema": "it reads no file",
         "jobs": "it reads no file",
         "doctor": "it reads no files but those that every command reads",
+        "desktop": "it reads no files but those of Halation",
+        "thumbnail": "it reads only from the folder of its file",
         "git-setup": "it reads no graph but those of the repository, and writes the configuration of git",
         "git-driver": "git hands it files of the repository, and copies in temporary folders",
         "worker": "the render job names the root",
@@ -117,11 +120,18 @@ app = typer.Typer(
 def main_options(
     context: typer.Context,
     version: bool = typer.Option(False, "--version", help="Print the version and stop."),
+    verbose: bool = typer.Option(False, "--verbose", help="With --version: also what halation doctor finds."),
 ) -> None:
     """Print the version, or the help where no command is given."""
     if version:
         print(f"halation {VERSION}")
+        if verbose:
+            from .doctor import doctor
+
+            doctor()
         raise typer.Exit
+    if verbose:
+        raise typer.BadParameter("it goes with --version", param_hint="--verbose")
     if context.invoked_subcommand is None:
         print(context.get_help(), file=sys.stderr)
         raise typer.Exit(2)

@@ -35,13 +35,16 @@ start of the program should not take noticeably longer for it."""
 VERSION = 1
 """Increased when other passes are measured, or when the compiler emits them differently."""
 
+_PREFIX = f"{VERSION}-"
+"""How the names of files begin that this version reads."""
+
 
 def load_or_measure(device: Device, folder: Path | None = None, *, sandbox: Sandbox) -> FormTimings | None:
     """The stored times of a device, else new ones, which are stored. None where they cannot be stored.
 
     `folder` is by default that of the user.
     """
-    path = (folder or _find_folder()) / f"{_hash_device(device)}.json"
+    path = (folder or timings_folder()) / f"{_PREFIX}{_hash_device(device)}.json"
     if sandbox.fault(path):
         return None
     if (stored := _read_timings(path, sandbox=sandbox)) is not None:
@@ -53,6 +56,7 @@ def load_or_measure(device: Device, folder: Path | None = None, *, sandbox: Sand
         if stored is None:
             record = {"renderer": device.target.renderer, "driver": device.driver, **asdict(measured)}
             write_text_atomically(path, json.dumps(record, indent=1) + "\n", sandbox=sandbox)
+            _remove_others(path.parent)
     except (OSError, HalationError):
         return None
     return stored or measured
@@ -91,10 +95,18 @@ def measure_forms(device: Device, size: Size = SIZE, turns: int = TURNS) -> Form
     return FormTimings(**fastest)
 
 
-def _find_folder() -> Path:
+def timings_folder() -> Path:
+    """The user's folder of measured times."""
     import platformdirs
 
     return platformdirs.user_cache_path("halation", appauthor=False) / "passes"
+
+
+def _remove_others(folder: Path) -> None:
+    """Delete the files of other versions of Halation, which no version uses for long."""
+    for path in folder.glob("*.json"):
+        if not path.name.startswith(_PREFIX):
+            path.unlink(missing_ok=True)
 
 
 def _hash_device(device: Device) -> str:

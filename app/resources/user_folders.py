@@ -33,6 +33,13 @@ def own_presets_folder() -> Path:
     return base / "presets"
 
 
+def shared_data_folder() -> Path:
+    """The user's folder of what programs of the desktop share, such as icons and entries of the menu."""
+    import platformdirs
+
+    return platformdirs.user_data_path()
+
+
 def list_preset_folders() -> tuple[Path, ...]:
     """Folders whose graphs are presets: the user's own, those of the preferences, then those of HALATION_PATH."""
     listed = os.environ.get(PRESETS_VARIABLE, "").split(os.pathsep)

@@ -103,3 +103,13 @@ def test_memory_is_the_smaller_of_machine_and_limit(cli, monkeypatch):
     monkeypatch.setattr(doctor, "memory_limit", lambda: 1 << 30)
     state, sentence = states(cli)["memory"]
     assert state == "note" and sentence.startswith("1.0 GiB") and "--memory" in sentence
+
+
+def test_the_version_with_all_that_a_report_needs(cli, home):
+    """The same as of doctor, and no path that names the user."""
+    result = cli("--version", "--verbose")
+    first, *rows = result.out.splitlines()
+    assert result.code == 0 and first == f"halation {VERSION}" == cli("--version").out.strip()
+    assert [row.split()[1] for row in rows] == [row.split()[1] for row in cli("doctor").out.splitlines()]
+    assert "measured" in {row.split()[1] for row in rows} and str(home) not in result.out
+    assert cli("--verbose").code == 2

@@ -19,7 +19,7 @@ DATA = ("nodes", "shaders", "presets")
 FLOORS = (
     "errors", "version", "glsl", "resources", "custom_nodes", "graph", "document", "compiler", "color", "media",
     "render_layers", "inputs", "lint", "renderer", "scripting", "__init__", "serving", "cluster", "watch", "regression",
-    "export", "authoring", "editor", "cli",
+    "export", "desktop", "authoring", "editor", "cli",
 )  # fmt: skip
 """Parts of the machine from the ground up. `__init__` is the public face of the engine: it stands on the renderer."""
 

@@ -20,7 +20,15 @@ from release import build_packages
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 SHIPPED = {
-    "app": ("**/*.py", "py.typed", "regression/report.html", "export/assets/*", "media/lettering/fonts/*"),
+    "app": (
+        "**/*.py",
+        "py.typed",
+        "regression/report.html",
+        "desktop/icons/*",
+        "editor/assets/**/*.png",
+        "export/assets/*",
+        "media/lettering/fonts/*",
+    ),
     "nodes": ("**/*.py", "**/*.bin", "py.typed"),
     "shaders": ("__init__.py", "**/*.glsl"),
     "presets": ("__init__.py", "*.json", "samples/*", "pictures/*"),

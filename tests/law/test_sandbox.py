@@ -22,6 +22,7 @@ ENVIRONMENT = {
     "cli/versions.py": "what the terminal and git say of colors",
     "cli/watchdog.py": "where a watched process, started or forked, writes its heartbeat",
     "color/management.py": "OCIO, the color config of the user, and how much OpenColorIO logs",
+    "desktop/installation.py": "HALATION_PROGRAM, the path of the single file that was started",
     "editor/window/opengl.py": "HALATION_WINDOW: whether the window is visible",
     "media/limits.py": "HALATION_MAX_PIXELS",
     "regression/parallel.py": "the threads of a worker process, at its start",
@@ -45,6 +46,7 @@ OPENERS = {
     "export/shipped_files.py": "texts of Halation that exports copy",
     "cli/chunk_worker.py": "small files that travel with chunks, in a temporary folder of ours",
     "cluster/versions.py": "the code of nodes that are installed",
+    "desktop/entries.py": "the icon of Halation",
     "cli/demo.py": "samples of Halation, copied to where the user says",
     "cli/git_setup.py": "the configuration of git",
     "cli/outcome.py": "the null device, in place of a stream that is closed",
@@ -95,6 +97,8 @@ UNRESTRICTED = {
     "cli/demo.py": "presets",
     "cli/gallery.py": "presets",
     "cli/specimen.py": "a provider that reads no files",
+    "cli/thumbnail.py": "the picture that it writes where the file manager says",
+    "desktop/installation.py": "files of Halation, in the folder of the desktop",
     "color/management.py": "the config of $OCIO, which the user trusts",
     "editor/library/dialog.py": "a preset in a folder of the user",
     "editor/start/gallery.py": "small pictures of presets",
@@ -106,11 +110,14 @@ UNRESTRICTED = {
 }
 """Modules that may open files outside of every sandbox, and which."""
 
+WITHOUT_FILES = ("schema", "jobs", "desktop", "thumbnail")
+"""Commands that need no sandbox of the process: they read no file, or make a sandbox of their own."""
+
 PROCESS = {
     "__init__.py": "Halation from Python: a sandbox only where HALATION_ROOT asks for one",
     "cli/options.py": "all commands with --root",
     "regression/plugin.py": "tests of pytest",
-    **{f"cli/{name.replace('-', '_')}.py": why for name, why in WITHOUT_ROOT.items() if name not in ("schema", "jobs")},
+    **{f"cli/{name.replace('-', '_')}.py": why for name, why in WITHOUT_ROOT.items() if name not in WITHOUT_FILES},
 }
 """Modules that make the sandbox of the process."""
 

@@ -89,3 +89,16 @@ def test_the_software_rasterizer_is_never_measured(counted):
     made = open_device(sandbox=UNRESTRICTED)
     made.close()
     assert made.target.software and made.target.why.startswith("by the table") and not counted
+
+
+def test_times_of_other_versions_are_removed(device, counted, tmp_path, monkeypatch):
+    """Those of other drivers stay; so does what is no file of ours."""
+    load_or_measure(device, tmp_path, sandbox=UNRESTRICTED)
+    load_or_measure(device.with_target(replace(device.target, renderer="another")), tmp_path, sandbox=UNRESTRICTED)
+    before = set(tmp_path.iterdir())
+    assert len(before) == 2
+    (tmp_path / "notes.txt").write_text("mine")
+    monkeypatch.setattr(calibration, "_PREFIX", "later-")
+    load_or_measure(device, tmp_path, sandbox=UNRESTRICTED)
+    after = set(tmp_path.iterdir())
+    assert len(counted) == 3 and not after & before and len(after) == 2 and tmp_path / "notes.txt" in after

@@ -39,6 +39,8 @@ from .shortcuts import note_scope, run_shortcuts
 from .status import draw_status
 
 SIZE = (1600, 1000)
+_ASSETS = str(Path(__file__).parents[1] / "assets")
+"""Has the icon of the window, where the library looks for it."""
 _APPEARING = 3
 """Frames until panels that are shown again are in their docks: each comes to the front there as it appears."""
 
@@ -101,6 +103,7 @@ class Window:
     def _make_params(self, version: tuple[int, int], size: tuple[int, int]) -> hello_imgui.RunnerParams:
         params = hello_imgui.RunnerParams()
         params.app_window_params.window_title = "Halation"
+        hello_imgui.set_assets_folder(_ASSETS)
         params.app_window_params.window_geometry.size = size
         params.app_window_params.restore_previous_geometry = True
         options = params.renderer_backend_options.open_gl_options or hello_imgui.OpenGlOptions()
