@@ -7,13 +7,22 @@ texture without pixels, reads what it writes, or uses anything that was released
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 import numpy as np
 from halation.compiler import Target
 from halation.nodes import Size
-from halation.renderer.device import Bindings, DeviceProgram, DeviceResource, DeviceTexture, PixelRect, TextureDepth
+from halation.renderer.device import (
+    Bindings,
+    DeviceProgram,
+    DeviceResource,
+    DeviceTexture,
+    PixelRect,
+    ProgramVariant,
+    TextureDepth,
+)
 from halation.resources.color_program import LookupTable
 from halation.resources.mesh import Mesh
 
@@ -133,6 +142,9 @@ class NullDevice:
 
     def create_compute_program(self, source: str) -> NullProgram:
         return NullProgram(self, source=source)
+
+    def precompile(self, variants: Sequence[ProgramVariant]) -> dict[ProgramVariant, Future[float]]:
+        return {}
 
     def draw(
         self,

@@ -8,6 +8,7 @@ the thread that opened the device, inside `make_current` or `save_draw_target`.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future
 from contextlib import AbstractContextManager
 from typing import Literal, Protocol
 
@@ -70,6 +71,30 @@ class DeviceProgram(DeviceResource, Protocol):
     def set(self, name: str, value: object) -> None:
         """Set a uniform. Nothing happens where the program does not read it."""
         ...
+
+
+class ImageKind(Struct, frozen=True):
+    """What a driver compiles a program for, of a picture that it reads or writes."""
+
+    is_wide_power: bool
+    """Whether the width is a power of two."""
+    is_high_power: bool
+    """Whether the height is one."""
+    components: int
+    depth: TextureDepth
+
+
+class ProgramVariant(Struct, frozen=True):
+    """A compute program, and the images for which it is compiled: a driver makes other code for other kinds."""
+
+    source: str
+    textures: tuple[ImageKind, ...]
+    targets: tuple[ImageKind, ...]
+
+    @property
+    def identity(self) -> str:
+        """A text that no other one has."""
+        return f"{self.textures}{self.targets}{self.source}"
 
 
 class Bindings(Struct, frozen=True):
@@ -144,6 +169,13 @@ class Device(Protocol):
 
     def create_compute_program(self, source: str) -> DeviceProgram:
         """Compile a compute shader. Raises DeviceError with the log of a driver that refuses it."""
+        ...
+
+    def precompile(self, variants: Sequence[ProgramVariant]) -> Mapping[ProgramVariant, Future[float]]:
+        """Begin to compile programs on other threads, if that is quicker than to compile them when they run.
+
+        A future has the time by `time.monotonic` from which on a program can be created without compiling it.
+        """
         ...
 
     # --- run ---------------------------------------------------------------------------------------------------------

@@ -21,8 +21,9 @@ vec3 curves_bent(
         rgb = light > 1e-6 ? rgb * (bent / light) : rgb + (bent - light);
     }
     vec3 code = vec3(curves_encode(rgb.r, space), curves_encode(rgb.g, space), curves_encode(rgb.b, space));
-    if (!keep_color)
-        code = vec3(curve_at(master, code.r, true), curve_at(master, code.g, true), curve_at(master, code.b, true));
+    // In a loop, drivers compile the curve once for all channels.
+    for (int channel = 0; channel < (keep_color ? 0 : 3); ++channel)
+        code[channel] = curve_at(master, code[channel], true);
     code = vec3(curve_at(red, code.r, true), curve_at(green, code.g, true), curve_at(blue, code.b, true));
     return vec3(curves_decode(code.r, space), curves_decode(code.g, space), curves_decode(code.b, space));
 }
@@ -32,9 +33,13 @@ vec4 curves(
     const vec4 master[17], const vec4 red[17], const vec4 green[17], const vec4 blue[17]
 ) {
     vec4 color = straight(finite(image));
-    vec3 bent = curves_bent(color.rgb, space, keep_color, master, red, green, blue);
-    // Transparent pixels stay black.
-    if (color.a <= ALPHA_NONE) bent -= curves_bent(vec3(0.0), space, keep_color, master, red, green, blue);
+    // Transparent pixels stay black: what the curves make of black is taken away.
+    vec3 bent = vec3(0.0), from = color.rgb;
+    for (int turn = 0; turn < (color.a <= ALPHA_NONE ? 2 : 1); ++turn) {
+        vec3 curved = curves_bent(from, space, keep_color, master, red, green, blue);
+        bent = turn == 0 ? curved : bent - curved;
+        from = vec3(0.0);
+    }
     color.rgb = finite(bent);
     return finite(premultiplied(color));
 }

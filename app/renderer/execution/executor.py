@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from concurrent.futures import CancelledError, Future
 from contextlib import contextmanager, suppress
 from functools import partial
@@ -25,6 +25,7 @@ from .progress_beacon import ProgressBeacon
 from .resource_cache import ResourceCache
 from .texture_pool import PooledTexture, TextureLease, TexturePool
 from .trials import Trial, Trials
+from .variants import PendingPrograms
 
 MAX_TABLES = 64
 MAX_MESHES = 16
@@ -63,6 +64,7 @@ class Executor:
         self._tables = ResourceCache[LookupTable, DeviceResource](MAX_TABLES)
         self._meshes = ResourceCache[Mesh, DeviceResource](MAX_MESHES)
         self._weights = ResourceCache[tuple[float, ...], DeviceResource](MAX_WEIGHT_BUFFERS)
+        self._pending = PendingPrograms(device, self.programs)
         self._beacon = ProgressBeacon()
         self._host_jobs = HostJobs()
 
@@ -108,6 +110,7 @@ class Executor:
 
     def compile(self, render_pass: Pass) -> None:
         """Have the program of a pass at hand. Raises ShaderError."""
+        self._pending.wait_for(render_pass)
         with self._watch(render_pass):
             self.programs.get(render_pass)
 
@@ -117,6 +120,7 @@ class Executor:
         if render_pass.host is not None:
             self._execute_on_host(plan, render_pass, lease)
             return
+        self._pending.wait_for(render_pass)
         with self._watch(render_pass):
             self._execute(plan, render_pass, lease)
 
@@ -157,10 +161,17 @@ class Executor:
             raise
         self.counters.passes += 1
 
-    def is_tried(self, plan: Plan, render_pass: Pass) -> bool:
-        """False while another process tries the program of a pass, which `execute` would wait for."""
+    def begin_programs(self, plan: Plan, passes: Iterable[Pass]) -> None:
+        """Begin to try programs in another process, and to compile others on threads."""
+        passes = tuple(passes)
+        for render_pass in passes:
+            self.begin_trial(plan, render_pass)
+        self._pending.begin(plan, passes)
+
+    def has_program(self, plan: Plan, render_pass: Pass) -> bool:
+        """False while the program of a pass is tried or compiled elsewhere, which `execute` would wait for."""
         trial = self.begin_trial(plan, render_pass)
-        return trial is None or trial.done()
+        return (trial is None or trial.done()) and self._pending.are_ready(render_pass)
 
     def begin_trial(self, plan: Plan, render_pass: Pass) -> Future[Trial] | None:
         """Begin to try the program of a pass in another process, where it has code of users and is not known."""

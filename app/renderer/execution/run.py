@@ -90,8 +90,7 @@ class WholeRun(Run):
         self._readers = _count_readers(plan, self._needed_passes, self._requested)
         self._decode_queue = start_decoding(find_needed_uploads(plan, self._needed_passes, self._requested, textures))
         self._lease = TextureLease(textures)
-        for index in self._needed_passes:
-            executor.begin_trial(plan, plan.passes[index])
+        executor.begin_programs(plan, (plan.passes[index] for index in self._needed_passes))
         for key in self._readers:
             if key in textures:
                 self._lease.add(key)
@@ -106,8 +105,10 @@ class WholeRun(Run):
         if self.has_ended:
             return True
         ends = self.passes_done == self.total
-        if not ends and not self._executor.is_tried(self.plan, self.plan.passes[self._needed_passes[self.passes_done]]):
-            return False
+        if not ends:
+            render_pass = self.plan.passes[self._needed_passes[self.passes_done]]
+            if not self._executor.has_program(self.plan, render_pass):
+                return False
         numbers = self._requested if ends else self.plan.passes[self._needed_passes[self.passes_done]].textures
         if not all(self._is_uploaded(number) or self._decode_queue.is_ready(number) for number in numbers):
             return False

@@ -6,7 +6,8 @@ A draw leaves no framebuffer of ours bound: moderngl binds the last one again on
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Future
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from functools import cached_property
 from threading import current_thread, get_ident
@@ -23,8 +24,9 @@ from ...compiler.devices import is_software
 from ...errors import DeviceError, UsageError
 from ...resources.color_program import LookupTable
 from ...resources.mesh import Mesh
-from ..device import Bindings, DeviceProgram, DeviceResource, DeviceTexture, PixelRect, TextureDepth
+from ..device import Bindings, DeviceProgram, DeviceResource, DeviceTexture, PixelRect, ProgramVariant, TextureDepth
 from .mesh import OpenGLMesh, create_mesh
+from .precompiler import Precompiler
 from .program import OpenGLProgram, create_compute_program, create_program
 from .texture import OpenGLTexture, create_table, create_texture
 
@@ -90,6 +92,9 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
 
     def create_compute_program(self, source: str) -> OpenGLProgram:
         return create_compute_program(self.context, source)
+
+    def precompile(self, variants: Sequence[ProgramVariant]) -> Mapping[ProgramVariant, Future[float]]:
+        return {} if self.shared or "llvmpipe" not in self.target.renderer else self._precompiler.begin(variants)
 
     # --- run ---------------------------------------------------------------------------------------------------------
 
@@ -218,6 +223,8 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
         return pixels.reshape(height, width, 3)[::-1]
 
     def close(self) -> None:
+        if "_precompiler" in self.__dict__:
+            self._precompiler.close()
         self.context.release()
 
     # --- parts -------------------------------------------------------------------------------------------------------
@@ -230,6 +237,10 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
     @cached_property
     def _interpolation(self) -> moderngl.Sampler:
         return self.context.sampler(repeat_x=False, repeat_y=False, filter=(moderngl.LINEAR, moderngl.LINEAR))
+
+    @cached_property
+    def _precompiler(self) -> Precompiler:
+        return Precompiler(f"{self.target.renderer}\0{self.driver}")
 
     @cached_property
     def _timer(self) -> moderngl.Query:
