@@ -18,6 +18,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from msgspec import to_builtins
 from msgspec.structs import replace
 
 from ..cluster.chunk import FrameChunk
@@ -27,15 +28,17 @@ from ..cluster.versions import describe_versions, find_version_fault
 from ..errors import DeviceError, GraphError, HalationError, InputError, UsageError
 from ..graph.paths import change_paths, resolve_path
 from ..regression.cluster_cases import run_case_text
+from ..renderer.jobs.source_files import FileHashes
 from ..resources.input_files import content_hash, fingerprint
 from . import parsing
 from .job_setup import describe_costs, make_output_settings, make_request, open_renderer
 from .outcome import INTERRUPTED, describe_fault
 
 if TYPE_CHECKING:
+    from ..cluster.chunk import ChunkStage
     from ..graph import Graph
     from ..renderer import Renderer
-    from ..renderer.jobs.item_session import JobItem
+    from ..renderer.jobs.item_session import JobItem, SharedHistory
     from ..renderer.jobs.render_job import RenderJob
     from ..renderer.jobs.reports import FrameReport, ItemReport
     from ..resources.sandbox import Sandbox
@@ -86,6 +89,8 @@ class ChunkRenderer:
 
     def __init__(self, folder: Path, write_line: Callable[[Mapping[str, Any]], None], sandbox: Sandbox) -> None:
         self._folder, self._write_line, self._sandbox = folder, write_line, sandbox
+        self._file_hashes = FileHashes(sandbox=sandbox)
+        self._topic = ""
         self._renderer: Renderer | None = None
         self._last_graph: tuple[tuple[str, str], Graph] | None = None
         self._hashes: dict[str, str] = {}
@@ -102,8 +107,13 @@ class ChunkRenderer:
                 self._write_line({"refusal": fault})
                 return
             renderer = self._open_renderer(chunk.job, graph)
+            self._renew_hashes(chunk)
             self._check_files(chunk, paths)
-            self._render_frames(chunk, self._locate_files(chunk, graph, paths), renderer)
+            graph, history = self._locate_files(chunk, graph, paths), self._open_history(chunk, paths)
+            if history is not None and chunk.stage is not None and chunk.stage.frames:
+                self._render_stage(chunk, chunk.stage, self._make_item(chunk, graph, chunk.job.frames, history))
+            else:
+                self._render_frames(chunk, graph, renderer, history)
         except DeviceError as fault:
             self._write_line({"refusal": f"it cannot render: {fault}"})
         except HalationError as fault:
@@ -112,13 +122,29 @@ class ChunkRenderer:
             faults = dict.fromkeys(chunk.job.frames, describe_fault(fault)) if is_clear else {}
             self._write_line({"faults": faults, "costs": {}})
 
-    def _render_frames(self, chunk: FrameChunk, graph: Graph, renderer: Renderer) -> None:
+    def _render_stage(self, chunk: FrameChunk, stage: ChunkStage, item: JobItem) -> None:
+        """Render a stage that comes before the frames."""
+        from ..renderer.jobs.item_session import ItemSession
+        from .chunk_stages import StageRenderer
+
+        assert self._renderer is not None and item.history is not None
+        session = ItemSession(self._renderer, item, chunk.job.document, self._file_hashes, chunk.job.resume)
+        try:
+            stage_renderer = StageRenderer(self._renderer, session, item.history.results, stage)
+            stage_renderer.render()
+        finally:
+            session.abort()
+        self._write_line({"faults": stage_renderer.faults, "costs": {}, "stage": to_builtins(stage_renderer.report)})
+
+    def _render_frames(
+        self, chunk: FrameChunk, graph: Graph, renderer: Renderer, history: SharedHistory | None
+    ) -> None:
         """Render the frames together, and after an error those that are missing one by one, to find the faulty ones."""
         faults, costs = dict[int, Mapping[str, Any]](), dict[str, Any]()
         pieces = [chunk.job.frames]
         while pieces:
             frames = pieces.pop(0)
-            item = self._make_item(chunk, graph, frames)
+            item = self._make_item(chunk, graph, frames, history)
             finished, fault, costs = self._run(renderer, item, chunk)
             missing = [frame for frame in frames if frame not in finished]
             if fault is None:
@@ -137,7 +163,14 @@ class ChunkRenderer:
 
         reports: list[ItemReport] = []
         progress = _FrameLines(self._write_line)
-        report = run_batch(renderer, [("", lambda: item)], reports.append, resume=chunk.job.resume, progress=progress)
+        report = run_batch(
+            renderer,
+            [("", lambda: item)],
+            reports.append,
+            resume=chunk.job.resume,
+            progress=progress,
+            hashes=self._file_hashes,
+        )
         costs = describe_costs(report, renderer.device.description)
         costs["seconds"] = {name: round(part, 4) for name, part in report.seconds.items()}
         frames = {frame.frame for frame in report.frames}
@@ -158,6 +191,12 @@ class ChunkRenderer:
         if self._renderer is None:
             self._renderer = open_renderer(job, graph, stays_open=True)
         return self._renderer
+
+    def _renew_hashes(self, chunk: FrameChunk) -> None:
+        """Keep the hashes of files for all chunks of a job."""
+        if self._topic != chunk.topic:
+            self._file_hashes.close()
+            self._topic, self._file_hashes = chunk.topic, FileHashes(sandbox=chunk.job.sandbox)
 
     def _localize_job(self, job: RenderJob, paths: PathMap) -> RenderJob:
         """The job with paths of this machine, in the sandbox of this process."""
@@ -207,13 +246,27 @@ class ChunkRenderer:
             file.write_bytes(base64.b64decode(chunk.contents[path]))
         return file
 
-    def _make_item(self, chunk: FrameChunk, graph: Graph, frames: Sequence[int]) -> JobItem:
+    def _open_history(self, chunk: FrameChunk, paths: PathMap) -> SharedHistory | None:
+        """What other workers have rendered of the job, without what nobody needs any more."""
+        from ..renderer.jobs.item_session import SharedHistory
+        from ..renderer.jobs.shared_results import SharedResults
+
+        if chunk.stage is None:
+            return None
+        folder = Path(paths.locate(chunk.stage.folder))
+        results = SharedResults(folder, self._file_hashes.hash_file, chunk.job.sandbox)
+        results.remove_files(chunk.stage.drops)
+        return SharedHistory(results, chunk.stage.frame_before, chunk.stage.memories)
+
+    def _make_item(
+        self, chunk: FrameChunk, graph: Graph, frames: Sequence[int], history: SharedHistory | None
+    ) -> JobItem:
         from ..renderer.jobs.item_session import JobItem
 
         job = chunk.job
         targets = parsing.find_targets(graph, job.node)
         request, settings = make_request(job, job.inputs, targets), make_output_settings(job, job.files)
-        return JobItem("", graph, request, settings, tuple(frames), graph_text=job.document)
+        return JobItem("", graph, request, settings, tuple(frames), graph_text=job.document, history=history)
 
 
 class _FrameLines:

@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
+from uuid import uuid4
 
 from msgspec import Struct
 from msgspec.structs import replace
@@ -16,7 +17,7 @@ from . import parsing
 from .cluster_progress import ClusterProgress
 from .execute import open_job_graph
 from .helpers import join_costs
-from .job_setup import choose_frames, has_independent_frames, make_output_settings, make_request, print_report_notes
+from .job_setup import choose_frames, find_remembering_node, make_output_settings, make_request, print_report_notes
 from .options import report_problems, resolve_inputs
 from .outcome import print_json, print_note, write_count
 
@@ -71,23 +72,32 @@ def prepare_chunk(job: RenderJob, graph: Graph, options: ClusterOptions) -> tupl
 
     Raises HalationError for what can be known before anything is rendered.
     """
-    from ..cluster.chunk import FrameChunk
+    from ..cluster.chunk import ChunkStage, FrameChunk
     from ..cluster.file_marks import FileMarker
     from ..cluster.versions import describe_versions
     from ..inputs.lazy_provider import LazyResourceProvider
     from ..renderer.jobs.destinations import plan_destinations
     from ..renderer.jobs.header import dump_whole_graph
+    from ..renderer.jobs.shared_results import FOLDER_PREFIX
 
     inputs = {name: _make_absolute(file) for name, file in resolve_inputs(graph, job.inputs).items()}
     targets = parsing.find_targets(graph, job.node)
     job = replace(job, inputs=inputs, frames=job.frames or choose_frames(job, graph, inputs))
     request, settings = make_request(job, inputs, targets), make_output_settings(job, job.files)
     plan_destinations(graph, request, settings, job.frames, job.sandbox)
-    is_chain = bool(job.videos) or not has_independent_frames(job, graph, targets)
+    node, has_stages = find_remembering_node(job, graph, targets)
+    first = LazyResourceProvider(job.sandbox).find_frames(graph, inputs)[0]
+    stage = None
     if job.videos:
         print_note(f"one worker renders all frames, since all are in {job.videos[0]}")
-    provider = LazyResourceProvider(job.sandbox)
-    history = provider.find_frames(graph, inputs)[0] if is_chain or graph.settings.preroll is not None else None
+    elif has_stages and len(set(job.frames)) > 1 and max(job.frames) > first:
+        print_note(f"node '{node}' needs the frame before each: one worker at a time renders what it stores")
+        folder = Path(os.path.abspath(job.files[0][1])).parent / f"{FOLDER_PREFIX}{uuid4().hex[:12]}"  # noqa: PTH100
+        stage = ChunkStage(folder=str(folder), frame_before=first)
+    elif node:
+        print_note(f"one worker renders all frames: node '{node}' needs the frame before each")
+    is_chain = bool(job.videos or node) and stage is None
+    history = first if is_chain or graph.settings.preroll is not None else None
     marker = FileMarker(graph, inputs, job.sandbox)
     sent_job = replace(
         job,
@@ -104,6 +114,7 @@ def prepare_chunk(job: RenderJob, graph: Graph, options: ClusterOptions) -> tupl
         contents=marker.read_contents(),
         versions=describe_versions(graph),
         is_chain=is_chain,
+        stage=stage,
     )
     return chunk, marker, history
 
@@ -120,7 +131,8 @@ def _send(
     from ..cluster.detached import DetachedCampaign, send_campaign
 
     frames = chunk.job.frames
-    marks_by_frame = {frames[0]: mark_files(frames)} if chunk.is_chain else {n: mark_files((n,)) for n in frames}
+    read_frames = {*frames, *(range(chunk.stage.frame_before, max(frames)) if chunk.stage else ())}
+    marks_by_frame = {frames[0]: mark_files(frames)} if chunk.is_chain else {n: mark_files((n,)) for n in read_frames}
     chunk = replace(
         chunk,
         job=replace(chunk.job, resume=not chunk.job.videos),
@@ -180,6 +192,7 @@ def _print_cluster_report(
             **costs,
             "workers": len(report.workers),
             "chunks": report.chunks,
+            "stages": dict(report.stages),
             "slowest": dict(slowest),
             "seconds": {**costs.get("seconds", {}), "total": round(seconds, 4)},
         }

@@ -11,6 +11,7 @@ from .outcome import print_note
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from ..compiler import Memory, Plan
     from ..graph import Graph, Port
     from ..inputs.prefetch import Prefetcher
     from ..renderer import Renderer, RenderRequest
@@ -83,17 +84,36 @@ def choose_frames(job: RenderJob, graph: Graph, inputs: Mapping[str, str]) -> tu
 
 def has_independent_frames(job: RenderJob, graph: Graph, targets: Mapping[str, Port]) -> bool:
     """True if each frame can be rendered without the frames before it. Raises HalationError."""
-    from ..compiler import Request, compile_graph
-    from ..inputs.lazy_provider import LazyResourceProvider
-
     if graph.settings.preroll is not None:
         return True
-    provider = LazyResourceProvider(job.sandbox)
-    plan = compile_graph(graph, Request(targets, provider.bind(graph, job.inputs), frame=job.frames[0]), provider)
+    plan = _plan_frame(job, graph, targets, {})
     for node in plan.remembering:
         print_note(f"one process renders all frames: node '{node}' needs the frame before each")
         break
     return not plan.memories
+
+
+def find_remembering_node(job: RenderJob, graph: Graph, targets: Mapping[str, Port]) -> tuple[str, bool]:
+    """The first node that needs the frame before each, "" for none, and whether other parts of a frame do not.
+
+    Raises HalationError.
+    """
+    from ..renderer.jobs.shared_results import has_stages
+
+    plan = _plan_frame(job, graph, targets, {})
+    if not plan.memories or graph.settings.preroll is not None:
+        return "", False
+    return plan.remembering[0], has_stages(_plan_frame(job, graph, targets, plan.memories))
+
+
+def _plan_frame(job: RenderJob, graph: Graph, targets: Mapping[str, Port], memories: Mapping[Port, Memory]) -> Plan:
+    """The plan of the first frame of a job, where the frame before has stored some `memories`."""
+    from ..compiler import Request, compile_graph
+    from ..inputs.lazy_provider import LazyResourceProvider
+
+    provider = LazyResourceProvider(job.sandbox)
+    bindings = provider.bind(graph, job.inputs)
+    return compile_graph(graph, Request(targets, bindings, frame=job.frames[0], memories=memories), provider)
 
 
 def describe_costs(report: JobReport, device: str) -> dict[str, Any]:

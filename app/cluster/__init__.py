@@ -10,6 +10,7 @@ adds what Dask cannot know: what a frame is, and whom to blame.
   is cancelled ends at once. The process is `halation worker --chunks`, and keeps its device for the next chunk.
 - `file_marks`, `path_map` and `versions` tell whether a worker would render the same pixels.
 - `assignments` cuts frames into chunks: as many as take some seconds by the measured cost, fewer towards the end.
+- `staged_assignments` cuts jobs whose nodes remember earlier frames into stages that share their results.
 - `campaign` sends the chunks and hears what comes of them. A frame that ends its process is tried alone on two other
   workers, then named; all others are finished. A worker that cannot render (another version, no OpenGL) gets no more.
 - `workers` lists who may render; `connection` reaches a scheduler, or starts one with workers inside of this process.

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 
 from msgspec import Struct
 
+from .chunk import ChunkStage
+
 CHUNK_SECONDS = 4.0
 """Seconds that a chunk is meant to take. The last frame of a chunk is written while nothing else is rendered, which
 takes some hundredths of a second: about 1 % of this time. Chosen so, and short enough for an even end."""
@@ -27,6 +29,19 @@ class Assignment(Struct, frozen=True):
     frames: tuple[int, ...]
     attempts: int = 0
     tried: frozenset[str] = frozenset()
+    stage: ChunkStage | None = None
+
+
+def count_chunk(cost: float) -> int:
+    """How many frames of a `cost` in seconds are a chunk; one while that is not known."""
+    return max(1, min(int(CHUNK_SECONDS / cost) if cost > 0.0 else 1, MAX_CHUNK))
+
+
+def average_cost(cost: float, seconds: Sequence[float]) -> float:
+    """The mean cost of frames, where newer ones count more, with those of another chunk."""
+    for frame_cost in seconds:
+        cost = frame_cost if cost == 0.0 else 0.9 * cost + 0.1 * frame_cost
+    return cost
 
 
 class AssignmentQueue:
@@ -44,18 +59,19 @@ class AssignmentQueue:
 
     def note_cost(self, seconds: Sequence[float]) -> None:
         """Take in what frames of a chunk have cost."""
-        for cost in seconds:
-            self._cost = cost if self._cost == 0.0 else 0.9 * self._cost + 0.1 * cost
+        self._cost = average_cost(self._cost, seconds)
 
-    def take(self, slots: int) -> Assignment:
-        """The next frames for a worker, of which `slots` render side by side. Towards the end chunks are smaller."""
+    def take(self, slots: int) -> Assignment | None:
+        """The next frames for a worker, of which `slots` render side by side. Towards the end chunks are smaller.
+
+        None where frames must be finished first.
+        """
         if self._repeated:
             return self._repeated.popleft()
         if self._is_chain:
             count = len(self._fresh)
         else:
-            by_cost = int(CHUNK_SECONDS / self._cost) if self._cost > 0.0 else 1
-            count = max(1, min(by_cost, len(self._fresh) // (2 * max(1, slots)), MAX_CHUNK))
+            count = min(count_chunk(self._cost), max(1, len(self._fresh) // (2 * max(1, slots))))
         return Assignment(tuple(self._fresh.popleft() for _ in range(min(count, len(self._fresh)))))
 
     def put_back(self, assignment: Assignment) -> None:
@@ -67,7 +83,7 @@ class AssignmentQueue:
 
         Returns the frames that have ended too many processes.
         """
-        attempts, tried = before.attempts + 1, before.tried | {worker}
+        attempts, tried, stage = before.attempts + 1, before.tried | {worker}, before.stage
         if self._is_chain:
             if attempts >= MAX_ATTEMPTS:
                 return tuple(frames)
@@ -76,7 +92,7 @@ class AssignmentQueue:
         if len(before.frames) == 1 and attempts >= MAX_ATTEMPTS:
             return tuple(frames)
         for frame in frames[:SUSPECTS]:
-            self.put_back(Assignment((frame,), attempts, tried))
+            self.put_back(Assignment((frame,), attempts, tried, stage))
         if rest := tuple(frames[SUSPECTS:]):
-            self.put_back(Assignment(rest, before.attempts, before.tried))
+            self.put_back(Assignment(rest, before.attempts, before.tried, stage))
         return ()

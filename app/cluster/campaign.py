@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import time
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, Any, Protocol, cast
 from uuid import uuid4
@@ -13,9 +15,11 @@ from msgspec import Struct, field
 from msgspec.structs import replace
 
 from ..errors import RenderError, rebuild_fault
+from ..renderer.jobs.shared_results import remove_shared_folder
 from .assignments import MAX_ATTEMPTS, Assignment, AssignmentQueue
-from .chunk import ChunkReport, FileMark, FrameChunk
-from .worker_task import read_version, render_chunk
+from .chunk import ChunkReport, FileMark, FrameChunk, StageReport
+from .staged_assignments import StagedAssignments
+from .worker_task import read_version, remove_results, render_chunk
 from .workers import WorkerRoster
 
 if TYPE_CHECKING:
@@ -58,6 +62,8 @@ class CampaignReport(Struct):
     costs: list[Mapping[str, Any]] = field(default_factory=list[Mapping[str, Any]])
     workers: set[str] = field(default_factory=set[str])
     chunks: int = 0
+    stages: Mapping[str, int] = field(default_factory=dict[str, int])
+    """How many frames were rendered by each stage that comes before the frames."""
 
 
 class FrameCampaign:
@@ -81,7 +87,7 @@ class FrameCampaign:
         self._is_cancelled = is_cancelled
         self._name = f"halation-{uuid4().hex[:8]}"
         self._chunk, self._mark_files = replace(chunk, topic=self._name), mark_files
-        self._frames = AssignmentQueue(chunk.job.frames, is_chain=chunk.is_chain)
+        self._frames = _open_assignments(self._chunk)
         self._workers = WorkerRoster(wants_gpu=not chunk.job.deterministic)
         self._inbox = SimpleQueue["Future[str] | Mapping[str, Any]"]()
         self._sent: dict[str, tuple[Future[str], Assignment, list[str] | None]] = {}
@@ -103,23 +109,32 @@ class FrameCampaign:
                 self._receive()
         finally:
             self._cancel()
+            if self._chunk.stage:
+                self._remove_results(self._chunk.stage.folder)
         return self.report
 
     # --- sending -----------------------------------------------------------------------------------------------------
 
     def _send_chunks(self) -> None:
         slots = self._workers.slots
-        while len(self._frames) and len(self._sent) < _WAVES * slots:
-            if not self._workers.usable:
+        # A piece of the history must not wait behind frames that others could render.
+        most = slots if self._chunk.stage else _WAVES * slots
+        while len(self._frames) and len(self._sent) < most and self._workers.usable:
+            assignment = self._frames.take(slots)
+            if assignment is None:
                 return
-            self._send(self._frames.take(slots))
+            self._send(assignment)
 
     def _send(self, assignment: Assignment) -> None:
         """Hand a chunk to Dask."""
+        kind = assignment.stage.kind if assignment.stage else "frames"
+        # The frames of a stage may be none of those whose files are written.
+        job_frames = assignment.frames if kind in ("frames", "check") else self._chunk.job.frames[:1]
         chunk = replace(
             self._chunk,
-            job=replace(self._chunk.job, frames=assignment.frames),
+            job=replace(self._chunk.job, frames=job_frames),
             marks=self._mark_files(assignment.frames),
+            stage=assignment.stage,
             slots=self._workers.count_slots_by_machine(),
         )
         places = self._workers.choose(assignment.tried)
@@ -144,6 +159,15 @@ class FrameCampaign:
             if self._sent:
                 self._client.cancel([future for future, _, _ in self._sent.values()], asynchronous=False, force=True)
         self._sent.clear()
+
+    def _remove_results(self, folder: str) -> None:
+        """Remove what workers have shared, here or where the folder is mapped to."""
+        with contextlib.suppress(Exception):  # a later job in that folder removes it
+            if Path(folder).is_dir():
+                remove_shared_folder(Path(folder))
+            elif self._chunk.path_map and self._workers.usable:
+                pairs = json.dumps([folder, self._chunk.path_map])
+                self._client.submit(remove_results, pairs, pure=False).result(timeout=_LOST_SECONDS)
 
     # --- hearing -----------------------------------------------------------------------------------------------------
 
@@ -182,6 +206,9 @@ class FrameCampaign:
                 self._refuse(report.worker, report.refusal)
             self._frames.put_back(assignment)
             return
+        if report.stage is not None and assignment.stage is not None:
+            self._judge_stage(report, report.stage, assignment)
+            return
         self._note_frames(report.seconds)
         self.report.kept.update(report.kept)
         self.report.workers.add(report.worker)
@@ -189,7 +216,8 @@ class FrameCampaign:
         self._frames.note_cost([cost for frame, cost in report.seconds.items() if frame not in report.kept])
         missing = [frame for frame in assignment.frames if frame not in self.report.seconds]
         if report.death:
-            lost = self._frames.put_suspects(missing, assignment, report.worker)
+            is_stage = assignment.stage is not None and assignment.stage.kind != "frames"
+            lost = self._frames.put_suspects(assignment.frames if is_stage else missing, assignment, report.worker)
             self._give_up(lost, f"{report.death} each time, on {MAX_ATTEMPTS} tries: the last was on {report.worker}")
             return
         for frame in missing:
@@ -202,20 +230,37 @@ class FrameCampaign:
         else:
             self._workers.note_outcome(report.worker, has_finished=True, sentence="")
 
+    def _judge_stage(self, report: ChunkReport, stage: StageReport, assignment: Assignment) -> None:
+        """Take in a stage, and try the rest of it again, or give up the frames that need it."""
+        frames = self._frames
+        assert isinstance(frames, StagedAssignments) and assignment.stage is not None
+        self.report.stages = frames.stage_frames
+        if kept := frames.finish_stage(stage, assignment):
+            self.report.kept |= kept
+            self._note_frames(dict.fromkeys(kept, 0.0))
+        if not report.faults or assignment.stage.kind == "check":
+            return
+        frame, facts = next(iter(report.faults.items()))
+        if facts["kind"] in _POINTLESS:
+            raise rebuild_fault(facts)
+        has_others = bool(set(self._workers.usable) - assignment.tried - {report.worker})
+        if not (has_others and frames.repeat_stage(assignment, frame, report.worker)):
+            self._note_faults(dict.fromkeys(frames.give_up_stage(assignment, frame), facts))
+
     def _judge_fault(self, frame: int, report: ChunkReport, assignment: Assignment) -> None:
         """Try a frame on another worker that cannot be rendered on one, or give it up."""
         facts = report.faults.get(frame)
         frames = assignment.frames if self._chunk.is_chain else (frame,)
         tried = assignment.tried | {report.worker}
         if facts is None:
-            self._frames.put_back(Assignment((frame,), assignment.attempts, assignment.tried))
+            self._frames.put_back(replace(assignment, frames=(frame,)))
         elif facts["kind"] in _POINTLESS:
             raise rebuild_fault(facts)
         elif assignment.attempts + 1 < MAX_ATTEMPTS and set(self._workers.usable) - tried:
             if frame == frames[0] or not self._chunk.is_chain:
-                self._frames.put_back(Assignment(frames, assignment.attempts + 1, tried))
+                self._frames.put_back(replace(assignment, frames=frames, attempts=assignment.attempts + 1, tried=tried))
         else:
-            self.report.faults[frame] = facts
+            self._note_faults({frame: facts})
 
     def _judge_loss(self, fault: BaseException | None, assignment: Assignment) -> None:
         """Decide about a chunk that Dask has given up: its workers ended, one after the other."""
@@ -230,10 +275,17 @@ class FrameCampaign:
 
     def _give_up(self, frames: tuple[int, ...], reason: str) -> None:
         facts = {"kind": "RenderError", "exit_code": 1}
-        self.report.faults |= {frame: {**facts, "message": reason} for frame in frames}
+        self._note_faults({frame: {**facts, "message": reason} for frame in frames})
+
+    def _note_faults(self, faults: Mapping[int, Mapping[str, Any]]) -> None:
+        self.report.faults |= faults
+        if isinstance(self._frames, StagedAssignments):
+            self._frames.finish(faults)
 
     def _note_frames(self, seconds: Mapping[int, float]) -> None:
         self.report.seconds |= seconds
+        if isinstance(self._frames, StagedAssignments):
+            self._frames.finish(seconds)
         self._listener.report_progress(self.report.seconds, len(self._workers.usable))
 
     # --- workers -----------------------------------------------------------------------------------------------------
@@ -287,3 +339,11 @@ class FrameCampaign:
         else:
             reasons = "; ".join(f"{address}: {reason}" for address, reason in self._workers.refusals.items())
             raise RenderError(f"--cluster {self._address}: no worker can render these frames: {reasons}")
+
+
+def _open_assignments(chunk: FrameChunk) -> AssignmentQueue | StagedAssignments:
+    """The frames of a job, with their stages if it has some."""
+    frames = chunk.job.frames
+    if chunk.stage is None:
+        return AssignmentQueue(frames, is_chain=chunk.is_chain)
+    return StagedAssignments(frames, chunk.stage.frame_before, chunk.stage.folder, checks=chunk.job.resume)

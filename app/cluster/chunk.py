@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Literal
 
 import msgspec
 from msgspec import Struct, field
 
 from ..errors import UsageError
 from ..renderer.jobs.render_job import RenderJob
+from ..renderer.jobs.shared_results import StoredMemory
 
 
 class FileMark(Struct, frozen=True):
@@ -18,6 +19,39 @@ class FileMark(Struct, frozen=True):
 
     size: int
     digest: str
+
+
+StageKind = Literal["check", "ahead", "history", "frames"]
+
+
+class ChunkStage(Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=True):
+    """What a chunk is in a job that is cut into stages (see `renderer.jobs.shared_results`).
+
+    Results are shared in `folder`. `frames` are those of the stage; without any, the frames of the job are rendered.
+    `memories` is what `frame_before` has stored. `drops` names files that nobody needs any more. A survey finds out
+    whether a stage of its own for what lies ahead of the history is worth it.
+    """
+
+    kind: StageKind = "frames"
+    folder: str = ""
+    frames: tuple[int, ...] = ()
+    frame_before: int = 0
+    memories: tuple[StoredMemory, ...] = ()
+    drops: tuple[str, ...] = ()
+    is_survey: bool = False
+
+
+class StageReport(Struct, frozen=True, omit_defaults=True):
+    """What came of a stage: the seconds of each frame that is finished, the names of its files, and what it stores.
+
+    `frame_bytes` is how much one frame stores. `ahead_pays` is what a survey has found.
+    """
+
+    seconds: Mapping[int, float] = field(default_factory=dict[int, float])
+    names: Mapping[int, tuple[str, ...]] = field(default_factory=dict[int, tuple[str, ...]])
+    memories: Mapping[int, tuple[StoredMemory, ...]] = field(default_factory=dict[int, tuple[StoredMemory, ...]])
+    frame_bytes: int = 0
+    ahead_pays: bool = False
 
 
 class FrameChunk(Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=True):
@@ -37,6 +71,8 @@ class FrameChunk(Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=
     """The version of everything that decides pixels, by its name (see `versions`)."""
     is_chain: bool = False
     """True if each frame needs the one before it."""
+    stage: ChunkStage | None = None
+    """None where each frame is rendered by itself, or one worker renders all of them."""
     topic: str = ""
     """The Dask topic to which finished frames are reported."""
     slots: Mapping[str, int] = field(default_factory=dict[str, int])
@@ -71,6 +107,7 @@ class ChunkReport(Struct, frozen=True, omit_defaults=True):
     death: str = ""
     refusal: str = ""
     is_cancelled: bool = False
+    stage: StageReport | None = None
 
     def to_json(self) -> str:
         """The report as a line of JSON."""

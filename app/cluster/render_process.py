@@ -20,11 +20,11 @@ from contextlib import contextmanager
 from typing import Any
 from urllib.parse import urlsplit
 
-from msgspec import Struct, field
+from msgspec import Struct, convert, field
 
 from ..renderer.jobs.render_job import RenderJob, worker_command
 from ..resources.machine import available_cores, resident_memory
-from .chunk import ChunkReport, FrameChunk
+from .chunk import ChunkReport, FrameChunk, StageReport
 
 CHECK_INTERVAL = 0.1
 """Seconds between two looks whether a chunk is still needed, and how much memory its process takes: a choice."""
@@ -94,7 +94,8 @@ class RenderProcess:
         answer = self.ask(chunk.to_json(), note_frame, is_cancelled, memory_limit)
         faults = {int(frame): fault for frame, fault in answer.facts.get("faults", {}).items()}
         costs, refusal = answer.facts.get("costs", {}), answer.facts.get("refusal", "")
-        return ChunkReport("", seconds, tuple(kept), faults, costs, answer.death, refusal, answer.is_cancelled)
+        stage = convert(answer.facts["stage"], StageReport, strict=False) if "stage" in answer.facts else None
+        return ChunkReport("", seconds, tuple(kept), faults, costs, answer.death, refusal, answer.is_cancelled, stage)
 
     def ask(
         self,

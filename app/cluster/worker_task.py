@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Callable
 from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from msgspec.structs import replace
 
 from ..errors import UsageError
+from ..renderer.jobs.shared_results import remove_shared_folder
 from ..resources.machine import machine_memory
 from .chunk import ChunkReport, FrameChunk
+from .path_map import PathMap
 from .render_process import RenderProcessPool, find_kind, share_cores
 
 if TYPE_CHECKING:
@@ -38,6 +42,12 @@ def render_chunk(text: str) -> str:
         report = process.render(chunk, reporter.report_frame, make_cancel_check(worker), limit)
     reporter.flush()
     return replace(report, worker=worker.address).to_json()
+
+
+def remove_results(text: str) -> None:
+    """Remove the shared results of a job; the JSON has the folder, and how paths are mapped."""
+    folder, pairs = json.loads(text)
+    remove_shared_folder(Path(PathMap(pairs).locate(folder)))
 
 
 def find_worker() -> Worker:

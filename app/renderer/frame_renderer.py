@@ -5,13 +5,17 @@ therefore depends on all frames before it. A `FrameRenderer` finds out how far b
 known by key, and if the texture of that key is still on the device, the history up to there is not rendered again. So
 frames in order cost one frame each, and a jump costs only the frames in between.
 
+Other processes may render the history instead: a `ResultStore` has the results of their passes, which are then uploaded
+and not computed.
+
 The plan of a frame needs only the keys of what the frame before stored, not its pixels. So plans are made frame by
 frame without rendering; `plan_next` makes one at a time, for callers that must not wait.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Protocol
 
 from msgspec.structs import replace
 
@@ -38,15 +42,26 @@ frame. With less, more of them are computed again."""
 Memories = Mapping[Port, Memory]
 
 
+class ResultStore(Protocol):
+    """Has results of passes that other processes have run."""
+
+    def load_pixels(self, plan: Plan, number: int) -> Array | None:
+        """The pixels of a surface of a plan as its texture holds them; None where nobody has computed them."""
+        ...
+
+
 class FrameRenderer:
     """Renders frames of a graph in any order; the pixels of a frame are always the same.
 
     History begins at the first frame of the graph's range, or `preroll` frames before the rendered one if the graph
-    says so; a frame before the range has no history. The frame of `request` does not matter.
+    says so; a frame before the range has no history. The frame of `request` does not matter. What `store` has is not
+    computed again.
     """
 
-    def __init__(self, renderer: Renderer, graph: Graph, request: RenderRequest) -> None:
-        self.renderer, self.graph, self.request = renderer, graph, request
+    def __init__(
+        self, renderer: Renderer, graph: Graph, request: RenderRequest, store: ResultStore | None = None
+    ) -> None:
+        self.renderer, self.graph, self.request, self._store = renderer, graph, request, store
         self.frames = renderer.find_frames(graph, request)
         """The first and last frame of the range."""
         self._memories: dict[tuple[int, int], Memories] = {}
@@ -101,14 +116,10 @@ class FrameRenderer:
         At the end `outputs_lease` holds its outputs. Results that the plan `following` has too stay on the device until
         another frame is rendered here or this renderer is closed.
         """
-        runner, begin = self.renderer.runner, self.find_history_start(frame)
-        for at in self.find_lead_frames(frame):
-            plan, lease = self._plan_from(begin, at), runner.create_lease()
-            yield runner.start_run(
-                plan, lease, (*plan.remembered, *_find_carried_surfaces(plan, self._plan_from(begin, at + 1)))
-            )
-            self._carry(lease)
+        runner = self.renderer.runner
         plan, lease = self.plan_frame(frame), runner.create_lease()
+        self._load_results(plan, (*plan.outputs.values(), *plan.remembered))
+        yield from self._start_lead_runs(frame)
         # If the outputs are on the device, what the frame stored may not be: a later frame renders it again if needed.
         remembered = () if self._is_on_device(plan) else plan.remembered
         carried = () if following is None else _find_carried_surfaces(plan, following)
@@ -116,6 +127,20 @@ class FrameRenderer:
         for number in (*plan.remembered, *carried):
             if plan.surfaces[number].key in runner.textures:
                 lease.add(plan.surfaces[number].key)
+        self._carry(lease)
+
+    def note_history(self, frame: int, memories: Memories) -> None:
+        """Take in what a frame stored that another process has rendered."""
+        self._memories[self.find_history_start(frame + 1), frame] = memories
+
+    def start_history_runs(self, frame: int, timings: PassTimings | None = None) -> Iterator[Run]:
+        """The runs that make only what a frame stores for the next one; it stays on the device until another frame is
+        rendered here.
+        """
+        plan, lease = self.plan_frame(frame), self.renderer.runner.create_lease()
+        self._load_results(plan, plan.remembered)
+        yield from self._start_lead_runs(frame)
+        yield self.renderer.runner.start_run(plan, lease, plan.remembered, timings=timings)
         self._carry(lease)
 
     def render_frame(self, frame: int) -> dict[str, Array]:
@@ -135,6 +160,31 @@ class FrameRenderer:
         self._carried.close()
 
     # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _start_lead_runs(self, frame: int) -> Iterator[Run]:
+        """The runs of the frames before a frame, for what they store."""
+        begin = self.find_history_start(frame)
+        for at in self.find_lead_frames(frame):
+            plan, lease = self._plan_from(begin, at), self.renderer.runner.create_lease()
+            carried = _find_carried_surfaces(plan, self._plan_from(begin, at + 1))
+            yield self.renderer.runner.start_run(plan, lease, (*plan.remembered, *carried))
+            self._carry(lease)
+
+    def _load_results(self, plan: Plan, requested: Iterable[int]) -> None:
+        """Upload what the store has of the `requested` surfaces, or of what they are made from."""
+        if self._store is None or plan.tiling is not None:
+            return
+        makers = {number: render_pass for render_pass in plan.passes for number in render_pass.targets}
+        todo, seen = list(requested), set[int]()
+        while todo:
+            number = todo.pop()
+            if number in seen or plan.surfaces[number].key in self.renderer.runner.textures:
+                continue
+            seen.add(number)
+            if (pixels := self._store.load_pixels(plan, number)) is not None:
+                self.renderer.runner.upload(plan, number, pixels, self._carried)
+            elif number in makers:
+                todo.extend(makers[number].textures)
 
     def _is_on_device(self, plan: Plan) -> bool:
         """True if the outputs are on the device."""
@@ -161,6 +211,8 @@ class FrameRenderer:
         """What the frame before stores."""
         if frame <= begin:
             return {}
+        if (begin, frame - 1) in self._memories:
+            return self._memories[begin, frame - 1]
         if (begin, begin) not in self._memories:
             self._plan_from(begin, begin)
         for at in range(self._find_last_planned(begin, frame), frame):

@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 from msgspec import Struct
 
-from ...compiler import FIRST_TABLE, MAX_WEIGHTS, Pass, Plan, Upload
+from ...compiler import FIRST_TABLE, MAX_WEIGHTS, Pass, Plan, Surface, Upload
 from ...errors import HalationError, InputError, RenderError, describe_owner
 from ...resources.color_program import LookupTable
 from ...resources.mesh import Mesh
@@ -91,14 +91,19 @@ class Executor:
                 f"{upload.picture.path}: it was {upload.whole[0]}x{upload.whole[1]} pixels when the rendering "
                 f"began, and is {size[0]}x{size[1]} now; render again"
             )
+        texture = self.write_pixels(surface, pixels, lease)
+        texture.cost = decoded.seconds + time.perf_counter() - started
+        self.counters.uploads += 1
+
+    def write_pixels(self, surface: Surface, pixels: Array, lease: TextureLease) -> PooledTexture:
+        """Put pixels on the device under the key of a surface. Raises DeviceError where there is no room."""
         try:
             texture = lease.create(surface)
             texture.handle.write(_convert(pixels, surface.components, surface.depth))
-            texture.cost = decoded.seconds + time.perf_counter() - started
         except BaseException:
             lease.discard(surface.key)
             raise
-        self.counters.uploads += 1
+        return texture
 
     def measure(self, plan: Plan, render_pass: Pass, lease: TextureLease) -> float:
         """Execute a pass and wait for it; the seconds that it took on the device."""
@@ -152,13 +157,8 @@ class Executor:
         except HalationError as error:
             error.node = error.node or render_pass.nodes[-1]
             raise type(error)(f"{describe_owner(error.node)}: {error}", node=error.node) from error
-        try:
-            texture = lease.create(surface)
-            texture.handle.write(_convert(pixels, surface.components, surface.depth))
-            texture.cost = max(time.perf_counter() - started, _HOST_SECONDS)
-        except BaseException:
-            lease.discard(surface.key)
-            raise
+        texture = self.write_pixels(surface, pixels, lease)
+        texture.cost = max(time.perf_counter() - started, _HOST_SECONDS)
         self.counters.passes += 1
 
     def begin_programs(self, plan: Plan, passes: Iterable[Pass]) -> None:

@@ -137,6 +137,16 @@ class Runner:
         with self.device.make_current():
             return {name: self._executor.download(plan, number, arrays) for name, number in plan.outputs.items()}
 
+    def download_surface(self, plan: Plan, number: int, arrays: ArrayPool) -> Array:
+        """The pixels of a surface that has a lease."""
+        with self.device.make_current():
+            return self._executor.download(plan, number, arrays)
+
+    def upload(self, plan: Plan, number: int, pixels: Array, lease: TextureLease) -> None:
+        """Put pixels that were computed elsewhere on the device, under the key of a surface. Raises DeviceError."""
+        with self.device.make_current():
+            self._executor.write_pixels(plan.surfaces[number], pixels, lease)
+
     def create_lease(self) -> TextureLease:
         """A new lease that holds no pixels yet."""
         return TextureLease(self.textures)

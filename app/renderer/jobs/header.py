@@ -5,11 +5,11 @@ Nothing in it depends on the time or place of rendering: the same graph and the 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from ... import document, media
-from ...compiler import Pass, Plan, Target
+from ...compiler import Pass, Plan, Surface, Target
 from ...compiler.ir.identity import hash_parts
 from ...errors import HalationError
 from ...graph import Graph
@@ -109,7 +109,7 @@ def compute_frame_key(
     if plan.memories:
         history_files = [(item.owner, hashes.hash_files(item.files.values())) for item in sources if item.files]
         history = hash_parts(graph, history_files, request.scale, request.size, plan.target.form)
-    keys = _compute_content_keys(plan, contents, history)
+    keys = compute_content_keys(plan, contents, lambda _: history)
     pixels = {layer: keys[plan.outputs[name]] for layer, name in file.layers.items()}
     view_settings = (file.view, settings.display, settings.look, settings.space, file.encoding.manager.digest)
     encoding_settings = (file.path.suffix, *view_settings, settings.compression, settings.precision)
@@ -135,10 +135,12 @@ def _read_key(file: Destination, sandbox: Sandbox) -> object:
         return None
 
 
-def _compute_content_keys(plan: Plan, contents: Mapping[str, str], history: str) -> dict[int, str]:
+def compute_content_keys(
+    plan: Plan, contents: Mapping[str, str], find_history_key: Callable[[Surface], str]
+) -> dict[int, str]:
     """Keys of surfaces like those of a plan, but from the contents of files instead of their paths and dates.
 
-    `history` stands for what the frame before stored.
+    `find_history_key` gives the key of what the frame before stored.
     """
     keys: dict[int, str] = {}
     for item in plan.uploads:
@@ -154,14 +156,14 @@ def _compute_content_keys(plan: Plan, contents: Mapping[str, str], history: str)
             surface.texel,
             surface.size,
         )
+    made = {*keys, *(number for render_pass in plan.passes for number in render_pass.targets)}
+    keys |= {number: find_history_key(item) for number, item in enumerate(plan.surfaces) if number not in made}
     for render_pass in plan.passes:
-        pass_key = hash_parts(
-            *_describe_pass(render_pass), [keys.get(number, history) for number in render_pass.textures]
-        )
+        pass_key = hash_parts(*_describe_pass(render_pass), [keys[number] for number in render_pass.textures])
         for place, number in enumerate(render_pass.targets):
             surface = plan.surfaces[number]
             keys[number] = f"{pass_key}.{place}.{surface.size}.{surface.texel}"
-    return {number: keys.get(number, history) for number in range(len(plan.surfaces))}
+    return keys
 
 
 def _describe_pass(render_pass: Pass) -> tuple[object, ...]:

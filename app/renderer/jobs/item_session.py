@@ -30,11 +30,20 @@ from .destinations import (
 from .header import compute_frame_key, has_key, make_header, matches_key
 from .reports import FrameReport, ItemReport
 from .scanline_writers import ScanlineWriters, select_row_outputs
+from .shared_results import SharedResults, StoredMemory
 from .source_files import FileHashes, SourceFile, SourceFinder
 from .video_writers import VideoWriters
 
 if TYPE_CHECKING:
     from fractions import Fraction
+
+
+class SharedHistory(Struct, frozen=True):
+    """What other processes have rendered of an item: their results, and what `frame` has stored for the next one."""
+
+    results: SharedResults
+    frame: int = 0
+    memories: tuple[StoredMemory, ...] = ()
 
 
 class JobItem(Struct, frozen=True):
@@ -49,6 +58,7 @@ class JobItem(Struct, frozen=True):
     """True if folders that its files go into are created."""
     graph_text: str = ""
     """The text of the graph in headers, where `graph` has paths of another machine; "" for that of `graph`."""
+    history: SharedHistory | None = None
 
 
 class FrameTask(Struct, frozen=True):
@@ -75,7 +85,7 @@ class ItemSession:
         by_rows = select_row_outputs(first) if renderer.device.target.memory else frozenset[str]()
         self._request = replace(item.request, halves=select_half_outputs(first, item.settings), by_rows=by_rows)
         self.item, self._renderer, self._graph_text, self._hashes = item, renderer, graph_text, hashes
-        self.frame_renderer = FrameRenderer(renderer, item.graph, self._request)
+        self.frame_renderer = self._open_frame_renderer()
         bound = renderer.pictures.bind(item.graph, self._request.bound_inputs)
         self._sources = SourceFinder(renderer.pictures, item.graph, bound)
         self._video_writers = VideoWriters(item.settings, self._find_rate, renderer.sandbox)
@@ -99,6 +109,10 @@ class ItemSession:
         check_destinations(files, plan, sources, self.item.settings, sandbox=self._renderer.sandbox)
         begin = self.frame_renderer.find_history_start(frame)
         return FrameTask(self, frame, files, plan, self._sources.find_sources(plan, frame, begin))
+
+    def has_files(self, frame: int) -> bool:
+        """True if all files of a frame are there, whatever they hold."""
+        return all(file.path.is_file() for file in self._files[frame])
 
     def find_kept_frame(self, task: FrameTask) -> FrameReport | None:
         """The report of a frame whose files exist and are up to date; None for a frame to be rendered."""
@@ -177,6 +191,14 @@ class ItemSession:
         """Remove incomplete videos, and release what the frames share."""
         self._video_writers.abort()
         self.frame_renderer.close()
+
+    def _open_frame_renderer(self) -> FrameRenderer:
+        history = self.item.history
+        store = history.results if history else None
+        frame_renderer = FrameRenderer(self._renderer, self.item.graph, self._request, store)
+        if history and history.memories:
+            frame_renderer.note_history(history.frame, {item.port: item.memory for item in history.memories})
+        return frame_renderer
 
     def _prepare_folders(self) -> None:
         """Create the folders of the files, or find fault with them, before anything is rendered."""

@@ -14,6 +14,7 @@ from .destinations import OutputSettings
 from .item_session import JobItem
 from .pipeline import FramePipeline, ItemOpener
 from .reports import FrameReport, ItemReport, JobProgress, JobReport
+from .source_files import FileHashes
 
 __all__ = ["FrameReport", "JobProgress", "JobReport", "OutputSettings", "run_batch", "run_job"]
 
@@ -49,11 +50,13 @@ def run_batch(
     resume: bool = False,
     progress: JobProgress | None = None,
     writers: int = 1,
+    hashes: FileHashes | None = None,
 ) -> JobReport:
     """Render items, given by their names, and write them; the report of all of them together.
 
     `writers` threads write the files; a video needs a single one. Each item is reported when it is finished. An error
-    ends its item, is part of the report of it, and is not raised.
+    ends its item, is part of the report of it, and is not raised. `hashes` are those of files that an earlier batch has
+    read.
     """
     counters, programs = renderer.runner.counters.passes, renderer.runner.programs.compiled
     item_reports: list[ItemReport] = []
@@ -62,7 +65,9 @@ def run_batch(
         item_reports.append(report)
         report_item(report)
 
-    pipeline = FramePipeline(renderer, items, collect_report, resume=resume, progress=progress, writers=writers)
+    pipeline = FramePipeline(
+        renderer, items, collect_report, resume=resume, progress=progress, writers=writers, hashes=hashes
+    )
     try:
         pipeline.run()
     finally:

@@ -41,10 +41,12 @@ class FramePipeline:
         resume: bool = False,
         progress: JobProgress | None = None,
         writers: int = 1,
+        hashes: FileHashes | None = None,
     ) -> None:
         self._renderer, self._items, self._report_item = renderer, items, report_item
         self._resume, self._progress = resume, progress
-        self._hashes = FileHashes(sandbox=renderer.sandbox)
+        self._owns_hashes = hashes is None
+        self._hashes = hashes or FileHashes(sandbox=renderer.sandbox)
         self._write_queue = WriteQueue[tuple[FrameTask, FrameReport | HalationError, float]](writers)
         self._row_writers: ScanlineWriters | None = None
         self._sessions: list[ItemSession] = []
@@ -77,7 +79,8 @@ class FramePipeline:
             self._row_writers.abort()
         for session in self._sessions:
             session.abort()
-        self._hashes.close()
+        if self._owns_hashes:
+            self._hashes.close()
 
     # --- items -------------------------------------------------------------------------------------------------------
 
