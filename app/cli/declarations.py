@@ -43,8 +43,8 @@ def write_argument(argument: Any) -> str:
 
 
 def list_flags(option: Any) -> list[str]:
-    """The flags of an option, the shortest first."""
-    return sorted(option.opts, key=len)
+    """The flags of an option, the shortest first; those that switch it off come last."""
+    return [*sorted(option.opts, key=len), *option.secondary_opts]
 
 
 def write_metavar(option: Any) -> str:

@@ -32,10 +32,10 @@ def thumbnail(
     sandbox = Sandbox(file.absolute().parent)
     if file.suffix.lower() == ".json":
         return run_session(lambda: _write_graph(file, picture, size, sandbox), _SECONDS, False)
-    from ..media.pictures.thumbnail import make_thumbnail, save_thumbnail
+    from ..media.pictures.thumbnail import read_thumbnail, save_thumbnail
     from ..resources.sandbox import UNRESTRICTED
 
-    save_thumbnail(picture, make_thumbnail(file, size, size, sandbox), UNRESTRICTED)
+    save_thumbnail(picture, read_thumbnail(file, size, size, sandbox), UNRESTRICTED)
     return 0
 
 
