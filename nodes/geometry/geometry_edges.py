@@ -3,9 +3,16 @@ from math import ceil, log2
 from typing import Annotated
 
 from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, OutputSocket, ProxyNote, Slider, Vector
+from ..light._coverage import COVERAGE_REACH
 
 _SEAM = 2.0
 """Width of a bare edge in pixels: one on either side of the seam."""
+
+_FOLLOWED = 13
+"""How many pixels away seams of the same line are looked for: those of shaders/lib/seam.glsl, and one to the side."""
+
+_NEAR = 2
+"""How many pixels away a seam can be whose line covers a pixel."""
 
 
 class GeometryEdges(Filter):
@@ -13,8 +20,8 @@ class GeometryEdges(Filter):
 
     It uses those that are linked. Depth: the second difference of 1 / depth along a row or column, relative
     to the nearest of three pixels. 1 / depth is linear on every plane, so that flat surfaces at any angle have no edge;
-    between two surfaces it is `1 - near / far`. Normals: the angle between neighbors. Ids: any difference. Lines lie on
-    the borders between pixels.
+    between two surfaces it is `1 - near / far`. Normals: the angle between neighbors. Ids: any difference. Lines lie
+    on the borders between pixels, smoothed along a contour, so that they are antialiased at every width.
     """
 
     aliases = (
@@ -63,20 +70,33 @@ class GeometryEdges(Filter):
     border = OutputSocket(Field(doc="1 where two ids meet."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        """Find seams between pixels, the line through each staircase of seams, and the coverage of a band around it."""
         field = Field()
-        differences = draw("geometry_edges_found", self.depth, self.normal, self.ids, overlap=1, result=Vector(width=3))
-        edges = draw.point(
-            "geometry_edges",
-            result=field,
-            found=differences,
+        normal = self._separate(draw) if draw.is_linked(self.normal) else self.normal
+        layers = {"depth": self.depth, "normal": normal, "ids": self.ids}
+        differences = draw("geometry_edges_found", **layers, overlap=1, result=Vector(width=3))
+        seams = draw(
+            "geometry_edges_seams",
+            **layers,
+            overlap={"depth": 2, "normal": 1, "ids": 1},
+            result=Vector(width=3),
             amounts=(self.depth_amount, self.crease_amount, self.id_amount),
             gap=self.depth_threshold,
             crease=self.crease_threshold,
             softness=self.softness,
-            cover=min(self.width / _SEAM, 1.0),
         )
+        right, below = (
+            draw(f"geometry_edges_{side}", seams=seams, edge="black", overlap=_FOLLOWED, result=Vector(width=3))
+            for side in ("right", "below")
+        )
+        lines = {"right": right, "below": below}
+        runs = draw("geometry_edges_runs", seams=seams, **lines, edge="black", overlap=1, result=Vector(width=3))
         if self.width > _SEAM:
-            edges = self._widen(draw, edges)
+            edges = self._widen(draw, runs, lines)
+        else:
+            edges = draw(
+                "geometry_edges", runs=runs, **lines, edge="black", overlap=_NEAR, result=field, width=self.width
+            )
         return {
             "edges": edges,
             "gap": draw.point("geometry_edges_gap", result=field, found=differences),
@@ -84,21 +104,44 @@ class GeometryEdges(Filter):
             "border": draw.point("geometry_edges_border", result=field, found=differences),
         }
 
-    def _widen(self, draw: Draw, edges: Drawn) -> Drawn:
-        """What lies within half the width of a seam, by the distance to the bare edges' contour."""
-        beyond = (self.width - _SEAM) / 2.0
-        reach = ceil(beyond) + 2
-        columns = draw.point("geometry_edges_seeds", result=Vector(width=2), edges=edges)
+    def _separate(self, draw: Draw) -> Drawn:
+        """Normals of one surface in each pixel, where a renderer has filtered two of them into one."""
+        deep = draw.is_linked(self.depth)
+        near = draw.point("geometry_edges_near", self.depth, self.normal, result=Field(), deep=deep)
+        coverage = draw(
+            "geometry_edges_coverage",
+            self.normal,
+            near=near,
+            overlap=COVERAGE_REACH,
+            result=Vector(width=3),
+            crease=self.crease_threshold,
+        )
+        return draw(
+            "geometry_edges_pure",
+            self.normal,
+            near=near,
+            coverage=coverage,
+            overlap={"normal": COVERAGE_REACH, "near": COVERAGE_REACH, "coverage": 0},
+            result=Vector(width=3),
+            deep=deep,
+        )
+
+    def _widen(self, draw: Draw, runs: Drawn, lines: Mapping[str, Drawn]) -> Drawn:
+        """What lies within half the width of a line: the nearest seam is found first, in columns and then in a row."""
+        reach = ceil(self.width / 2.0) + _NEAR
+        columns = draw.point("geometry_edges_seeds", result=Vector(width=2), runs=runs)
         for level in reversed(range(ceil(log2(reach + 1)))):
             columns = draw(
                 "geometry_edges_columns", seeds=columns, overlap=(0, 2**level), result=Vector(width=2), reach=2**level
             )
-        contour = draw(
-            "geometry_edges_distance",
-            mask=edges,
+        return draw(
+            "geometry_edges_wide",
+            runs=runs,
+            **lines,
             columns=columns,
-            overlap={"mask": reach + 1, "columns": (reach, 0)},
+            edge="black",
+            overlap={"columns": (reach, 0)} | dict.fromkeys(("runs", "right", "below"), reach + _NEAR),
             result=Field(),
+            width=self.width,
             reach=reach,
         )
-        return draw.point("geometry_edges_line", result=Field(), contour=contour, beyond=beyond)

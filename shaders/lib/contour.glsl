@@ -59,3 +59,18 @@ float contour_distance(vec2 here, float most) {
         );
     return mine ? -far : far;
 }
+
+// The nearest pixel inside the mask, or -1, in a pass that reads `columns`.
+ivec2 contour_nearest(ivec2 here, int reach) {
+    int nearest = reach * reach;
+    ivec2 seed = ivec2(-1);
+    for (int away = 0; away < extent.x && away * away < nearest; ++away)
+        for (int side = -1; side <= 1; side += 2) {
+            int x = here.x + side * away;
+            if (x < 0 || x >= extent.x) continue;
+            float row = columns_at(ivec2(x, here.y)).x;
+            int up = int(row) - here.y, square = away * away + up * up;
+            if (row >= 0.0 && square < nearest) nearest = square, seed = ivec2(x, int(row));
+        }
+    return seed;
+}

@@ -1,4 +1,4 @@
-"""Geometry edges: nothing on planes, closed forms at steps and folds, ids exactly, widths by scipy's distances."""
+"""Geometry edges: nothing on planes, closed forms at steps and folds, ids exactly, coverage by scipy's distances at 8 x 8 samples."""
 
 from __future__ import annotations
 
@@ -54,7 +54,8 @@ def test_silhouettes_of_a_render_are_found(run):
     apart = np.minimum(depth[:, 1:], depth[:, :-1]) < 0.7 * np.maximum(depth[:, 1:], depth[:, :-1])
     outline = (apart & (ids[:, 1:] != ids[:, :-1]))[:, 1:-1]
     found = np.maximum(edges[:, 1:], edges[:, :-1])[:, 1:-1]
-    assert outline.sum() > 500 and found[outline].min() == 1.0
+    diagonal = 1.5 - np.sqrt(0.5)  # a band of two pixels, from the middle of a pixel that lies beside a diagonal
+    assert outline.sum() > 500 and found[outline].min() > diagonal - 1e-5 and np.median(found[outline]) == 1.0
 
 
 @pytest.mark.parametrize("angle", [0.01, 1.0, 20.0, 90.0, 170.0])
@@ -88,7 +89,7 @@ def test_ids_are_exact(run):
         expected = np.any([other != given for other in beside], axis=0)
         found = run(GeometryEdges(), {"ids": given}, output="border")[..., 0]
         np.testing.assert_array_equal(found, expected)
-        np.testing.assert_array_equal(run(GeometryEdges(), {"ids": given})[..., 0], expected)
+        assert run(GeometryEdges(), {"ids": given})[..., 0][expected].min() > 0.75
 
 
 def test_the_strongest_line_counts(run):
@@ -105,14 +106,57 @@ def test_without_links_there_are_no_lines(run):
     assert (run(GeometryEdges(), size=(6, 5)) == 0.0).all()
 
 
-@pytest.mark.parametrize("width", [2.5, 5.0, 13.0])
-def test_wide_lines_lie_evenly_on_the_seams(run, width):
-    y, x = np.mgrid[:61, :83]
-    ids = ((x - 40) ** 2 + (y - 28) ** 2 < 400) + 2 * (x > 70)
-    thin = run(GeometryEdges(), {"ids": ids})[..., 0] > 0.5
-    contour = np.where(thin, 0.5 - distance_transform_edt(thin), distance_transform_edt(~thin) - 0.5)
-    found = run(GeometryEdges(width=width), {"ids": ids})[..., 0]
-    np.testing.assert_allclose(found, np.clip(width / 2.0 - 1.0 - contour + 0.5, 0.0, 1.0), atol=2e-5)
+def shapes(width: int, height: int, samples: int) -> dict[str, np.ndarray]:
+    """Discs, an ellipse, a turned box, a rod and half planes, with `samples` x `samples` for each pixel."""
+    y, x = (np.mgrid[: height * samples, : width * samples] + 0.5) / samples
+    u, v = ((x - 48.0) * np.cos(0.3) + (y - 36.0) * np.sin(0.3), (y - 36.0) * np.cos(0.3) - (x - 48.0) * np.sin(0.3))
+    half_planes = {
+        f"{angle} degrees": (x - 47.3) * np.cos(np.radians(angle)) + (y - 35.6) * np.sin(np.radians(angle)) < 0.0
+        for angle in (10, 20, 33, 60, 77)
+    }
+    return half_planes | {
+        "disc": np.hypot(x - 47.1, y - 36.4) < 24.3,
+        "large disc": np.hypot(x - 48.4, y - 35.8) < 31.9,
+        "box": (abs(u) < 22.2) & (abs(v) < 14.7),
+        "rod": abs(v) < 2.3,
+    }
+
+
+@pytest.mark.parametrize("layer", ["ids", "normal", "depth"])
+@pytest.mark.parametrize("width", [1.0, 1.6, 2.5, 6.0, 13.0])
+def test_lines_cover_pixels_as_distances_at_eight_times_the_size(run, width, layer):
+    """From a layer without antialiasing, within 0.1 (RMS over all pixels that either line touches).
+
+    The staircase itself, without the line through it, is 0.2 to 0.3 off.
+    """
+    across, down, samples = 96, 72, 8
+    for name, inside in shapes(across, down, samples).items():
+        away = np.where(inside, distance_transform_edt(inside), distance_transform_edt(~inside)) - 0.5
+        expected = (away / samples < width / 2.0).reshape(down, samples, across, samples).mean((1, 3))
+        pixels = inside[samples // 2 :: samples, samples // 2 :: samples]
+        given = {
+            "ids": pixels * 1.0,
+            "normal": np.where(pixels[..., None], np.float32([0.6, 0.0, 0.8]), np.float32([0.0, -0.8, 0.6])),
+            "depth": np.where(pixels, 4.0, 7.0),
+        }
+        found = run(GeometryEdges(width=width), {layer: given[layer]})[..., 0]
+        inner = np.s_[2:-2, 2:-2]  # beyond the border of the picture nothing is known
+        touched = ((expected > 0.0) | (found > 0.0))[inner]
+        error = ((found - expected)[inner][touched] ** 2).mean() ** 0.5
+        assert error < (0.115 if width == 1.0 else 0.1), name
+
+
+def test_filtered_normals_have_one_edge(run):
+    """A pixel between two surfaces has the mean of their normals, which is no edge on both of its sides."""
+    samples, inside = 8, shapes(96, 72, 8)["disc"]
+    share = inside.reshape(72, samples, 96, samples).mean((1, 3))[..., None]
+    one, other = np.array([0.9, 0.0, np.sqrt(0.19)]), np.array([-0.9, 0.0, np.sqrt(0.19)])
+    away = np.where(inside, distance_transform_edt(inside), distance_transform_edt(~inside)) - 0.5
+    expected = (away / samples < 0.8).reshape(72, samples, 96, samples).mean((1, 3))
+    found = run(GeometryEdges(width=1.6), {"normal": share * one + (1.0 - share) * other})[..., 0]
+    touched = (expected > 0.0) | (found > 0.0)
+    assert ((found - expected)[touched] ** 2).mean() ** 0.5 < 0.1
+    assert 0.97 < found.sum() / expected.sum() < 1.03
 
 
 @pytest.mark.parametrize("scale", [1.0, 0.5, 0.25])
