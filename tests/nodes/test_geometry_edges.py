@@ -1,4 +1,4 @@
-"""Geometry edges: nothing on planes, closed forms at steps and folds, ids exactly, coverage by scipy's distances at 8 x 8 samples."""
+"""Geometry edges: none on planes, closed forms at steps and folds, exact ids, coverage by distances at 8 x 8 samples."""
 
 from __future__ import annotations
 
