@@ -1,4 +1,4 @@
-"""Geometry edges: none on planes, closed forms at steps and folds, exact ids, coverage by distances at 8 x 8 samples."""
+"""Geometry edges: none on planes, closed forms at steps and folds, exact ids, coverage by distances at 8 x 8."""
 
 from __future__ import annotations
 
