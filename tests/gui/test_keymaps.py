@@ -24,7 +24,7 @@ def test_a_keymap_is_chosen_and_counts_at_once(gui) -> None:
         ui.wait(3)
         assert "search field" in ui.editor.places
         ui.keys("Escape")
-        ui.keys("F1")
+        ui.keys("Shift+F1")
         ui.wait(4)
         ui.shot("keymap_sheet.png")
 

@@ -6,6 +6,7 @@ import OpenImageIO as oiio
 import pytest
 from halation import document, presets
 from halation.authoring.commands import AddNode
+from halation.authoring.preset_versions import list_versions
 from halation.document.about import find_about
 from halation.editor.toolkit.keys import chord
 from halation.resources.sandbox import UNRESTRICTED
@@ -68,6 +69,29 @@ def test_a_preset_is_replaced_only_after_a_question(gui, answer: str) -> None:
         ui.wait(4)
         assert (path.read_text() == "{}") is (answer == "Escape")
         assert ("preset" in ui.editor.dialogs.open) is (answer == "Escape")
+
+    gui(body, BLOOM)
+
+
+def test_a_new_version_keeps_the_old_one_and_a_right_click_goes_back_to_it(gui) -> None:
+    def body(ui) -> None:
+        ui.settled()
+        path = own_presets_folder() / "mine.json"
+        path.parent.mkdir(parents=True)
+        path.write_bytes(BLOOM.read_bytes())
+        first = path.read_bytes()
+        save_as(ui, "mine", doc="Another one.")
+        ui.keys("Enter")
+        ui.click("answer 0")
+        ui.until(lambda: not ui.editor.dialogs.any)
+        assert find_about(document.load(path, sandbox=UNRESTRICTED)).doc == "Another one."
+        ui.editor.actions.run("file.start")
+        ui.until(lambda: "preset mine" in ui.editor.places)
+        ui.click("preset mine", button=1)
+        ui.until(lambda: "version 1" in ui.editor.places)
+        ui.click("version 1")
+        ui.until(lambda: path.read_bytes() == first)
+        assert [version.number for version in list_versions(path)] == [2, 1]
 
     gui(body, BLOOM)
 

@@ -6,6 +6,8 @@ from gui_driver import Ui
 from halation import presets
 from halation.authoring.edits.element_id import ElementId
 from halation.editor.dialogs.node_page import find_picture_before, read_paragraphs
+from halation.editor.dialogs.panel_page import PARAGRAPHS
+from halation.editor.shared.window_commands import PanelTitle
 from halation.graph import Graph, Port, signature
 from halation.nodes import catalogue
 
@@ -17,12 +19,16 @@ def test_the_page_of_the_selected_node_with_pictures_before_and_after(gui) -> No
         ui.settled()
         ui.session.select([])
         ui.move("Graph", (0.5, 0.9))
-        ui.keys("Shift+F1")
+        ui.keys("F1")
+        ui.until(lambda: "dialog Panel" in ui.editor.places)
+        assert ui.editor.dialogs.page == "Graph"
+        ui.keys("Escape")
+        ui.wait(3)
         assert not ui.editor.dialogs.any
         ui.session.select([ElementId("bloom")])
         ui.settled()
         ui.until(lambda: {"bloom", "inputs.beauty"} <= ui.editor.preview.thumbnails)
-        ui.keys("Shift+F1")
+        ui.keys("F1")
         ui.until(lambda: "dialog Node" in ui.editor.places)
         ui.wait(3)
         before, after = ui.editor.places["picture Before"], ui.editor.places["picture After"]
@@ -45,3 +51,25 @@ def test_every_node_has_a_page() -> None:
         if "image" in face.unfolded_inputs:
             linked = graph.connect(Port("source", "out"), Port("node", "image"))
             assert find_picture_before(linked, "node", face) == "source"
+
+
+def test_the_page_of_the_panel_under_the_pointer(gui) -> None:
+    def body(ui: Ui) -> None:
+        ui.settled()
+        ui.session.select([ElementId("bloom")])
+        for title, name in ((PanelTitle.RENDERS, "Panel"), (PanelTitle.SCOPES, "Panel"), (PanelTitle.VIEWER, "Node")):
+            ui.editor.commands.show_panel(title)
+            ui.until(lambda title=title: title in ui.editor.places)
+            ui.move(title, (0.5, 0.6))
+            ui.keys("F1")
+            ui.until(lambda name=name: f"dialog {name}" in ui.editor.places)
+            assert name == "Node" or ui.editor.dialogs.page == title
+            ui.keys("Escape")
+            ui.wait(3)
+            assert not ui.editor.dialogs.any
+
+    gui(body, BLOOM)
+
+
+def test_every_panel_has_a_page() -> None:
+    assert set(PARAGRAPHS) == set(PanelTitle)

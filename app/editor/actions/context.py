@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import ElementView, SystemText
     from ..shared.window_commands import WindowCommands
+    from ..toolkit.context import Interface
     from ..toolkit.services import Services
 
 
@@ -37,8 +38,9 @@ class ViewSettingsContext:
     store: PreferenceStore
     dialogs: Dialogs
     commands: WindowCommands
+    interface: Interface
 
     @classmethod
     def compose(cls, services: Services) -> ViewSettingsContext:
         """Pick what the actions use."""
-        return cls(services.session, services.store, services.dialogs, services.commands)
+        return cls(services.session, services.store, services.dialogs, services.commands, services.interface)

@@ -31,6 +31,16 @@ def _has_active_node(context: ViewSettingsContext) -> bool:
     return item is not None and not isinstance(item, Unknown)
 
 
+def _open_page(context: ViewSettingsContext) -> None:
+    """Open the page of the selected node, unless the pointer is over a panel that is not about nodes."""
+    dialogs, panel = context.dialogs, context.interface.pointed_panel
+    if _has_active_node(context) and panel in (None, PanelTitle.GRAPH, PanelTitle.INSPECTOR, PanelTitle.VIEWER):
+        dialogs.open.add("node")
+    else:
+        dialogs.page = panel or PanelTitle.GRAPH
+        dialogs.open.add("panel")
+
+
 def _theme(context: ViewSettingsContext) -> None:
     context.store.change(theme="light" if context.store.current.theme == "dark" else "dark")
 
@@ -125,15 +135,15 @@ VIEW: tuple[Action[ViewSettingsContext], ...] = (
     ),
     Action("view.screenshot", "Save a Screenshot...", lambda context: context.commands.save_screenshot(), "View"),
     Action("help.palette", "Command Palette...", lambda context: context.dialogs.open.add("palette"), "Help", "Ctrl+P"),
-    Action("help.shortcuts", "Shortcuts", lambda context: context.dialogs.toggle("shortcuts"), "Help", "F1"),
     Action(
-        "help.node",
-        "About the Node",
-        lambda context: context.dialogs.open.add("node"),
+        "help.manual",
+        "Manual Page",
+        _open_page,
         "Help",
-        "Shift+F1",
-        enabled=_has_active_node,
-        doc="What the selected node does, and all of its sockets and values.",
+        "F1",
+        doc="What the selected node does, with all of its sockets and values, or what the panel under the pointer is "
+        "for, with all of its actions.",
     ),
+    Action("help.shortcuts", "Shortcuts", lambda context: context.dialogs.toggle("shortcuts"), "Help", "Shift+F1"),
     Action("help.about", "About Halation", lambda context: context.dialogs.open.add("about"), "Help"),
 )

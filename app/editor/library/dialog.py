@@ -12,6 +12,7 @@ from imgui_bundle import ImVec2, imgui
 
 from ...authoring.edits.extracting import extract_graph
 from ...authoring.library import find_preset_file, list_folders, make_preset_name, save_preset, split_tags
+from ...authoring.preset_versions import keep_version
 from ...document.about import About, find_about
 from ...errors import UsageError
 from ...resources.sandbox import UNRESTRICTED
@@ -192,9 +193,19 @@ class PresetDialog:
             return
         self._context.dialogs.question = Question(
             "Replace the preset",
-            f"There is a preset {path.stem} in {path.parent} already.",
-            (("Replace it", partial(self._save, form, path)), ("Cancel", lambda: None)),
+            f"There is a preset {path.stem} in {path.parent} already. A new version keeps the one that is there: the "
+            "start screen lists the versions of a preset on a right click.",
+            (
+                ("Save a new version", partial(self._save_version, form, path)),
+                ("Replace it", partial(self._save, form, path)),
+                ("Cancel", lambda: None),
+            ),
         )
+
+    def _save_version(self, form: _PresetForm, path: Path) -> None:
+        """Save the preset, and keep what it was until now as a version."""
+        keep_version(path, UNRESTRICTED)
+        self._save(form, path)
 
     def _save(self, form: _PresetForm, path: Path) -> None:
         session = self._context.session

@@ -9,6 +9,8 @@ from typing import Literal
 
 from halation.nodes import Value
 
+from .window_commands import PanelTitle
+
 Purpose = Literal["graph", "image", "table", "scene", "font", "config", "code", "export"]
 """The kind of file: it decides which files are listed and which folder is remembered."""
 
@@ -57,7 +59,10 @@ class Dialogs:
     browse: Browse | None = None
     question: Question | None = None
     open: set[str] = field(default_factory=set[str])
-    """Names of open dialogs: "palette", "shortcuts", "preferences", "export", "about", "start", "search", "preset"."""
+    """Names of open dialogs: "palette", "shortcuts", "preferences", "export", "about", "start", "search", "preset",
+    "node", "panel"."""
+    page: PanelTitle | None = None
+    """The panel that the dialog "panel" explains."""
 
     def toggle(self, name: str) -> None:
         """Open a dialog, or close it."""

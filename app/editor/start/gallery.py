@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import time
+from functools import partial
 from typing import TYPE_CHECKING
 
 from halation.presets import picture
 from imgui_bundle import ImVec2, imgui
 
+from ...authoring.preset_versions import PresetVersion, list_versions, restore_version
 from ...media.pictures.thumbnail import load_thumbnail
 from ...resources.sandbox import UNRESTRICTED
 from ..shared.entries import preset_entries, rank_entries, spell_out
@@ -64,6 +67,8 @@ class PresetGallery:
                 imgui.same_line()
             if self._draw_card(preset, width):
                 chosen = preset
+            if preset.is_own:
+                self._draw_versions(preset)
             if leaves and index == 0:
                 imgui.internal.clear_active_id()
                 imgui.internal.focus_item()
@@ -108,6 +113,26 @@ class PresetGallery:
             return tuple(presets)
         by_path = {str(preset.path): preset for preset in presets}
         return tuple(by_path[entry.id] for entry in rank_entries(preset_entries(presets), self._query))
+
+    def _draw_versions(self, preset: PresetFacts) -> None:
+        """Draw the menu of a card: the versions of a preset, to go back to one."""
+        if not imgui.begin_popup_context_item(f"versions {preset.path}"):
+            return
+        versions = list_versions(preset.path)
+        imgui.text_disabled("Go back to a version" if versions else "There is no other version yet")
+        for version in versions:
+            kept_at = time.strftime("%Y-%m-%d %H:%M", time.localtime(version.kept_at))
+            if imgui.menu_item(f"Version {version.number}, until {kept_at}", "", False)[0]:
+                self._context.log.attempt(partial(self._restore, preset, version))
+            record(self._context, f"version {version.number}")
+        imgui.end_popup()
+
+    def _restore(self, preset: PresetFacts, version: PresetVersion) -> None:
+        restore_version(preset.path, version, UNRESTRICTED)
+        self._context.log.add(f"{preset.name} is version {version.number} again; what it was is a version now")
+        query, category = self._query, self._category
+        self.begin()
+        self._query, self._category = query, category
 
     def _draw_card(self, preset: PresetFacts, width: float) -> bool:
         """True if it was clicked, or chosen by keyboard."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from ...authoring.log import Log
 from ...authoring.preferences import PreferenceStore
+from ..shared.window_commands import PanelTitle
 from ..theme.fonts import Fonts
 from ..theme.palette import PALETTES, Palette
 from .places import Rect
@@ -19,6 +20,8 @@ class Interface:
     fonts: Fonts | None = None
     places: dict[str, Rect] = field(default_factory=dict[str, Rect])
     """Where widgets were drawn last, by name: for tests and hints."""
+    pointed_panel: PanelTitle | None = None
+    """The panel under the pointer."""
     dragging: bool = False
     """True while the user drags a value: pictures may be coarse until the mouse button is released."""
 

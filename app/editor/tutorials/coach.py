@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
+from ..shared.window_commands import PanelTitle
 from ..theme.style import u32, ui_scale
 from ..toolkit.buttons import quiet_button
 from ..toolkit.keys import display_shortcut
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
 
 _WIDTH, _GAP, _MARGIN = 320.0, 14.0, 10.0
 _PADDING = 14.0, 10.0
+_OUT = 5.0
+"""How far the frame is from its widget."""
 
 _FLAGS = (
     int(imgui.WindowFlags_.no_decoration)
@@ -51,15 +55,14 @@ class Coach:
                 progress.go(1)
             return
         rect = progress.widgets.get(step.widget)
-        if rect is not None:
-            self._draw_frame(rect)
+        if rect is not None and (frame := fit_frame(rect, progress.widgets, _OUT * ui_scale())):
+            self._draw_frame(frame)
         self._draw_card(progress.lesson, step, rect)
 
-    def _draw_frame(self, rect: Rect) -> None:
+    def _draw_frame(self, frame: Rect) -> None:
         """Draw a frame around a widget; it is wider than the focus ring, so that the two differ."""
-        lines, scale = imgui.get_foreground_draw_list(), ui_scale()
-        out, accent = 5.0 * scale, self._context.palette.accent
-        low, high = (rect[0] - out, rect[1] - out), (rect[2] + out, rect[3] + out)
+        lines, scale, accent = imgui.get_foreground_draw_list(), ui_scale(), self._context.palette.accent
+        low, high = frame[:2], frame[2:]
         lines.add_rect(low, high, u32(accent, 0.3), 8.0 * scale, 7.0 * scale)
         lines.add_rect(low, high, u32(accent), 8.0 * scale, 2.0 * scale)
 
@@ -106,6 +109,23 @@ class Coach:
         """The sentence with the current shortcuts of the actions that it names in braces."""
         actions = self._context.actions
         return re.sub(r"\{([\w.]+)\}", lambda match: display_shortcut(actions.shortcut(match[1])), sentence)
+
+
+def fit_frame(rect: Rect, widgets: Mapping[str, Rect], out: float) -> Rect | None:
+    """The frame around a widget, `out` pixels away and inside of its dialog or panel; None if it is scrolled away."""
+    x, y = (rect[0] + rect[2]) / 2, (rect[1] + rect[3]) / 2
+    dialogs = [place for name, place in widgets.items() if name.startswith("dialog ")]
+    panels = [widgets[title] for title in PanelTitle if title in widgets]
+    frame = rect[0] - out, rect[1] - out, rect[2] + out, rect[3] + out
+    holders = [place for place in (*dialogs, *panels) if place[0] <= x <= place[2] and place[1] <= y <= place[3]]
+    if not holders:
+        return None if any(_overlaps(rect, panel) for panel in panels) else frame
+    left, top, right, bottom = holders[0]
+    return max(frame[0], left), max(frame[1], top), min(frame[2], right), min(frame[3], bottom)
+
+
+def _overlaps(first: Rect, second: Rect) -> bool:
+    return first[0] < second[2] and second[0] < first[2] and first[1] < second[3] and second[1] < first[3]
 
 
 def place_card(rect: Rect | None, size: tuple[float, float], area: Rect, scale: float) -> tuple[float, float]:

@@ -88,4 +88,4 @@ _HINTS: dict[str, tuple[Hint, ...]] = {
     PanelTitle.PROBLEMS: (("Click", "show the node"), ("Right click", "copy")),
     PanelTitle.LOG: (("Right click", "copy"),),
 }
-_ANYWHERE = (("help.palette", "find any command"), ("help.shortcuts", "all shortcuts"))
+_ANYWHERE = (("help.palette", "find any command"), ("help.manual", "manual page"), ("help.shortcuts", "all shortcuts"))

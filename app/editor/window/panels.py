@@ -14,6 +14,7 @@ from ..curves.panel import AnimationPanel
 from ..dialogs.about import AboutDialog
 from ..dialogs.cheat_sheet import CheatSheet
 from ..dialogs.node_page import NodePage
+from ..dialogs.panel_page import PanelPage
 from ..dialogs.question import QuestionDialog
 from ..history.panel import HistoryPanel
 from ..inspector.inspector import Inspector
@@ -65,6 +66,7 @@ OVERLAYS: tuple[tuple[str, Callable[[Contexts], Panel]], ...] = (
     ("Start", lambda contexts: StartScreen(contexts.start)),
     ("Shortcuts", lambda contexts: CheatSheet(contexts.dialogs)),
     ("Node", lambda contexts: NodePage(contexts.dialogs)),
+    ("Panel", lambda contexts: PanelPage(contexts.dialogs)),
     ("Preferences", lambda contexts: PreferencesDialog(contexts.preferences)),
     ("Save as preset", lambda contexts: PresetDialog(contexts.presets)),
     ("Command palette", lambda contexts: CommandPalette(contexts.command_palette)),

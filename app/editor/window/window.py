@@ -81,8 +81,6 @@ class Window:
         """Panels that come to the front from that frame on: one in each, as a tab follows only the last focus."""
         self._filling: PanelTitle | None = None
         """The panel that fills the window."""
-        self._pointed: PanelTitle | None = None
-        """The panel under the pointer."""
         self._docks = DockShares(lambda name: self.params.docking_params.dock_space_id_from_name(name))
         self._dropped: list[str] = []
         self._input = InputQueue()
@@ -205,7 +203,7 @@ class Window:
         self.frames += 1
         self._restyle()
         self._docks.follow_window()
-        self._pointed = find_pointed_panel(editor.places)
+        editor.interface.pointed_panel = find_pointed_panel(editor.places)
         if self._filling is None:
             self._front = frozenset(title for title in PanelTitle if title in editor.places)
         if self._front_again and self.frames >= self._front_at:
@@ -334,7 +332,7 @@ class Window:
             commands.saves_screenshot = False
             self._screenshot()
         if commands.maximizes_pointed:
-            commands.maximizes = self._pointed or self._filling
+            commands.maximizes = self.editor.interface.pointed_panel or self._filling
             commands.maximizes_pointed = False
         if commands.toggles_full_screen:
             commands.toggles_full_screen = False
