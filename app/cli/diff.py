@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..resources.render_choices import DEFAULT_TIMEOUT
 from ..resources.sandbox import Sandbox
 from . import parsing
 from .options import AsJson, Inputs, Scale, SizeText
 from .outcome import print_json
 from .versions import is_colored, load_version, paint, print_lines
+from .watchdog import Timeout, run_watched
 
 if TYPE_CHECKING:
     from ..document.diff_merge import DifferenceLine, GraphDifference, PartChange
@@ -43,6 +45,7 @@ def diff(
     size: SizeText = None,
     scale: Scale = 1.0,
     frame: _Frame = None,
+    timeout: Timeout = DEFAULT_TIMEOUT,
     as_json: AsJson = False,
     *,
     sandbox: Sandbox,
@@ -64,10 +67,13 @@ def diff(
     report: dict[str, Any] = {"a": a, "b": b, "same": not changes, **difference_facts(changes, lines)}
     if not as_json:
         print_lines(lines, is_colored())
-    if render:
+    if not render:
+        return _finish_report(report, as_json)
+    choices = (parsing.parse_inputs(inputs), parsing.parse_size(size), parsing.parse_scale(scale), frame)
+
+    def work() -> int:
         from .picture_diff import render_and_compare
 
-        choices = (parsing.parse_inputs(inputs), parsing.parse_size(size), parsing.parse_scale(scale), frame)
         try:
             report["pictures"] = render_and_compare(a, b, choices, output, sandbox)
         except RenderError as fault:
@@ -77,6 +83,13 @@ def diff(
         for picture in report["pictures"] if not as_json else ():
             sign = "=" if picture["same"] else "~"
             print(paint(f"{sign} picture {picture['output']}: {picture['words']}", sign, is_colored()))
+        return _finish_report(report, as_json)
+
+    return run_watched(work, (before, after), timeout, as_json)
+
+
+def _finish_report(report: dict[str, Any], as_json: bool) -> int:
+    """Print the report as JSON if that is asked for; the exit code."""
     if as_json:
         print_json(report)
     return 0 if report["same"] else 1

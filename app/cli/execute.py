@@ -29,7 +29,7 @@ from .job_setup import (
 from .options import open_graph, report_problems, resolve_inputs
 from .outcome import print_json, print_note, write_count
 from .progress import progress_reporter
-from .watchdog import can_fork, needs_watchdog, run_forked
+from .watchdog import needs_watchdog, run_watched
 
 if TYPE_CHECKING:
     from ..graph import Graph, Port
@@ -54,11 +54,13 @@ def execute(job: RenderJob, progress: Literal["bar", "json"], as_json: bool) -> 
         print_note(f"one process renders all frames, since all are in {job.videos[0]}")
         job = replace(job, processes=1)
     execute_opened = execute_batch if job.entries else _execute_opened
-    if job.processes == 1 and needs_watchdog(graph) and can_fork():
-        return run_forked(
-            lambda: execute_opened(job, graph, progress, as_json, started), job.timeout, job.memory, as_json
-        )
-    return execute_opened(job, graph, progress, as_json, started)
+    return run_watched(
+        lambda: execute_opened(job, graph, progress, as_json, started),
+        (graph,) if job.processes == 1 else (),  # what shares the frames is watched one by one
+        job.timeout,
+        as_json,
+        memory=job.memory,
+    )
 
 
 def open_job_graph(job: RenderJob) -> Graph:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
 
 import typer
 
+from ..resources.render_choices import DEFAULT_TIMEOUT
 from ..resources.sandbox import Sandbox
 from . import parsing
 from .options import (
@@ -25,6 +26,7 @@ from .options import (
     resolve_inputs,
 )
 from .outcome import print_json
+from .watchdog import Timeout, run_watched
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -60,6 +62,7 @@ def explain(
     memory: Memory = None,
     dot: _Dot = False,
     html: _Html = None,
+    timeout: Timeout = DEFAULT_TIMEOUT,
     as_json: AsJson = False,
     *,
     sandbox: Sandbox,
@@ -94,8 +97,9 @@ def explain(
     if html is not None:
         wanted_form = form_or_device if form and form_or_device != "device" else None
         order = _PageOrder(html, opened_graph, bindings, wanted_form, memory_limit, parsed_precision)
-        _write_page(order, request, sandbox)
-        return 0
+        return run_watched(
+            lambda: _write_page(order, request, sandbox), (opened_graph,), timeout, as_json, memory=memory_limit
+        )
     target = replace(_choose_target(form_or_device, sandbox), memory=memory_limit)
     # Planned as for one EXR file per output.
     request = replace(request, by_rows=frozenset(request.targets or opened_graph.outputs))
@@ -126,8 +130,11 @@ class _PageOrder(NamedTuple):
     precision: Precision | None
 
 
-def _write_page(order: _PageOrder, request: Request, sandbox: Sandbox) -> None:
-    """Run the passes of one frame, and write a page of what they make. Raises OutputError, and errors of renders."""
+def _write_page(order: _PageOrder, request: Request, sandbox: Sandbox) -> int:
+    """Run the passes of one frame, write a page of what they make, and return 0.
+
+    Raises OutputError, and errors of renders.
+    """
     from ..document.about import find_about
     from ..export.passes_page import PassesPage
     from ..inputs.default_view import choose_default_view
@@ -148,6 +155,7 @@ def _write_page(order: _PageOrder, request: Request, sandbox: Sandbox) -> None:
     for trace in renderer.runner.trace(plan):
         page.add_pass(trace)
     write_text_atomically(output, page.text, sandbox)
+    return 0
 
 
 def _describe_views(graph: Graph, plan: Plan, provider: LazyResourceProvider) -> dict[str, str]:

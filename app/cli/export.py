@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..resources.render_choices import DEFAULT_TIMEOUT
 from ..resources.sandbox import Sandbox
 from . import parsing
 from .options import (
@@ -22,6 +23,7 @@ from .options import (
     resolve_inputs,
 )
 from .outcome import print_json, print_note
+from .watchdog import Timeout, run_watched
 
 if TYPE_CHECKING:
     from ..export import ExportReport, TableOptions
@@ -70,6 +72,7 @@ def export(
     color_range: _ColorRange = "",
     lut_size: _LutSize = 33,
     check: _Check = False,
+    timeout: Timeout = DEFAULT_TIMEOUT,
     as_json: AsJson = False,
     *,
     sandbox: Sandbox,
@@ -101,8 +104,12 @@ def export(
         frame,
         table,
     )
-    report_export(graph, chosen.export(order), as_json)
-    return 0
+
+    def work() -> int:
+        report_export(graph, chosen.export(order), as_json)
+        return 0
+
+    return run_watched(work, (opened_graph,), timeout, as_json)
 
 
 def select_nodes(graph: Graph, selection: str) -> Graph:

@@ -14,7 +14,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -167,6 +167,18 @@ def run_session(work: Callable[[], int], timeout: float, as_json: bool) -> int:
     if os.environ.get(BEACON_FILE) or not can_fork():
         return work()
     return run_forked(work, timeout, 0, as_json, tries_first=True)
+
+
+def run_watched(
+    work: Callable[[], int], graphs: Iterable[Graph], timeout: float, as_json: bool, *, memory: int = 0
+) -> int:
+    """Do work that renders these graphs once, and return its exit code.
+
+    It is done in a copy of this process that this one watches, if they have code and there can be a copy.
+    """
+    if any(map(needs_watchdog, graphs)) and can_fork():
+        return run_forked(work, timeout, memory, as_json)
+    return work()
 
 
 def run_forked(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -12,7 +13,7 @@ from pathlib import Path
 
 import pytest
 from commands import Cli
-from halation.cli import helpers
+from halation.cli import helpers, program
 from halation.errors import HalationError
 from halation.renderer.jobs.render_job import RenderJob
 
@@ -173,3 +174,33 @@ def test_commands_that_render_many_times_are_watched_too(tmp_path: Path, command
     assert ended.returncode == 5, ended.stderr
     sentence = ended.stderr.splitlines()[-1]
     assert sentence.startswith("halation: node 'user': its code has not ended after 1 seconds")
+
+
+def test_every_command_that_renders_graphs_has_a_time_limit() -> None:
+    """`demo` and `gallery` render what Halation ships; what starts `execute` and `worker` has the limit."""
+    renders = re.compile(r"\b(open_device|open_batch|render_and_compare|execute)\(")
+    commands = {
+        path.stem: text
+        for path in Path(program.__file__).parent.glob("*.py")
+        if re.search(rf"^def {path.stem}\(.*?^\) -> int:", text := path.read_text(), re.M | re.S)
+        and renders.search(text)
+        and path.stem not in ("execute", "worker")
+    }
+    limited = {name for name, text in commands.items() if "timeout: Timeout" in text}
+    assert commands.keys() - limited == {"demo", "gallery"} and {"render", "export", "diff"} <= limited
+
+
+@pytest.mark.parametrize("command", ["export --lut-size 129 -o out.cube", "explain --html page.html", "diff --render"])
+def test_commands_that_render_once_are_watched_too(tmp_path: Path, command: str) -> None:
+    path = graph(tmp_path, ENDLESS)
+    tree = json.loads(path.read_text())
+    tree |= {"inputs": {"image": {"type": "Image", "default": 0.5}}}
+    path.write_text(json.dumps(tree | {"links": tree["links"] | {"user.image": "inputs.image"}}))
+    name, *options = command.split()
+    graphs = (path, path) if name == "diff" else (path,)
+    words = [*HALATION, name, *map(str, graphs), *options, "--timeout", "1"]
+    ended = subprocess.run(words, capture_output=True, text=True, timeout=100, cwd=tmp_path)
+    assert ended.returncode == 5, ended.stderr
+    sentence = ended.stderr.splitlines()[-1]
+    assert sentence.startswith("halation: node 'user': its code has not ended after 1 seconds")
+    assert {file.name for file in tmp_path.iterdir()} == {"graph.json"}
