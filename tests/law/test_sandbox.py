@@ -28,6 +28,7 @@ ENVIRONMENT = {
     "regression/parallel.py": "the threads of a worker process, at its start",
     "renderer/execution/progress_beacon.py": "where the watching process reads the heartbeat",
     "renderer/opengl/driver_settings.py": "what Mesa reads from nowhere else, while a context is opened",
+    "renderer/opengl/shader_cache.py": "where Mesa keeps what it has compiled, which it reads from nowhere else",
     "renderer/opengl/warming.py": "the device that the user chose",
     "resources/library_messages.py": "what libraries are told to print",
     "resources/machine.py": "whether there is a display",
@@ -80,6 +81,7 @@ OPENERS = {
     "regression/toml_tables.py": "the same",
     "regression/report.py": "the template of the page",
     "renderer/execution/progress_beacon.py": "the heartbeat",
+    "renderer/opengl/shader_cache.py": "hashes of programs, in the cache of the driver, which writes there too",
     "watch/reloading.py": "the modules of Halation",
 }
 """Modules that open files by themselves, and which. All others go through `resources`."""
