@@ -1,10 +1,11 @@
 """`./dev release`: what is published of a version, into out/release, from the last commit.
 
 The wheel, the source archive, NOTICE with the licenses of all that a full installation brings, a bill of materials in
-the form of CycloneDX, and SHA256SUMS. The same commit gives the same bytes, so that anybody can build a release again
-and compare. Four things would differ otherwise, and each is fixed here: files come from the commit and not from the
-working folder, dates are that of the commit, rights do not depend on the user's umask, and the members of the source
-archive have no owner. The wheel is built from the source archive. Everything is built twice and compared.
+the form of CycloneDX, the application for Linux as an archive and as one file, and SHA256SUMS. The same commit gives
+the same bytes, so that anybody can build a release again and compare. Four things would differ otherwise, and each is
+fixed here: files come from the commit and not from the working folder, dates are that of the commit, rights do not
+depend on the user's umask, and the members of archives have no owner. The wheel is built from the source archive.
+Everything is built twice and compared.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import gzip
 import hashlib
 import io
 import os
+import platform
 import re
 import shutil
 import subprocess
@@ -21,8 +23,10 @@ import tarfile
 import tempfile
 import tomllib
 from collections.abc import Iterable, Iterator
-from importlib.metadata import Distribution, distributions
+from importlib.metadata import Distribution, distributions, version
 from pathlib import Path
+
+from application.build import build_folder, list_notices, pack_folder, write_single_file
 
 ROOT = Path(__file__).parents[1]
 DEVELOPMENT_EXTRAS = frozenset({"docs", "release", "test"})
@@ -52,11 +56,38 @@ def main() -> None:
         python = install_everything(builds[0][1], work / "installation")
         (libraries,) = python.parents[1].glob("lib/python*/site-packages")
         notice = write_notice(distributions(path=[str(libraries)]))
-        (folder / "NOTICE").write_text(notice, encoding="utf-8", newline="\n")
         write_bill_of_materials(python, folder / "halation.cdx.json")
+        if sys.platform == "linux":
+            notice += write_application(python, work, folder, commit_time)
+        (folder / "NOTICE").write_text(notice, encoding="utf-8", newline="\n")
     (folder / "SHA256SUMS").write_text(write_checksums(folder), encoding="ascii", newline="\n")
     for path in sorted(folder.iterdir()):
         print(f"{path.relative_to(ROOT)}  {path.stat().st_size / 1e6:.2f} MB")
+
+
+def write_application(python: Path, work: Path, folder: Path, commit_time: int) -> str:
+    """Build the application for Linux twice, as an archive and as one file; returns what is to be added to NOTICE."""
+    pip = [sys.executable, "-m", "pip", "--python", python, "install", "--quiet"]
+    subprocess.run([*pip, f"pyinstaller=={version('pyinstaller')}"], check=True)
+    name = f"halation-{read_version()}-linux-{platform.machine()}"
+    archives: list[Path] = []
+    applications: list[Path] = []
+    for turn in (1, 2):
+        (work / f"application{turn}").mkdir()
+        applications.append(build_folder(python, work / f"application{turn}", commit_time))
+        archives.append(work / f"application{turn}" / f"{name}.tar.gz")
+        pack_folder(applications[-1], archives[-1], commit_time)
+    if archives[0].read_bytes() != archives[1].read_bytes():
+        sys.exit("release: two builds of the application differ; this is a fault of tests/application/build.py")
+    shutil.copy(archives[0], folder)
+    write_single_file(archives[0], folder / f"{name}.run")
+    parts = [f"{'=' * 80}\n{title}\n\n{text}\n" for title, text in list_notices(applications[0]).items()]
+    return "\nThe application for Linux holds these too.\n" + "\n".join(parts)
+
+
+def read_version() -> str:
+    """The version of Halation."""
+    return re.findall(r'^VERSION = "(.+)"', (ROOT / "app/version.py").read_text(encoding="utf-8"), re.M)[0]
 
 
 def read_output(*words: str) -> str:
