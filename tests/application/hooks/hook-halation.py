@@ -1,4 +1,4 @@
-"""Tells PyInstaller what belongs to Halation: all data, and modules, which stay files because they are found as files."""
+"""Tells PyInstaller what belongs to Halation: all data, and modules that stay files, as they are found by."""
 
 from PyInstaller.utils.hooks import collect_data_files, collect_submodules, copy_metadata
 
