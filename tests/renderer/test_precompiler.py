@@ -136,37 +136,37 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_a_record_belongs_to_one_driver_and_to_its_cache(cache: Path) -> None:
-    record = ProgramRecord.open("driver 1")
+    record = ProgramRecord.load("driver 1")
     record.add(["a", "b"])
     assert "a" in record and "c" not in record
-    assert "b" in ProgramRecord.open("driver 1") and "b" not in ProgramRecord.open("driver 2")
+    assert "b" in ProgramRecord.load("driver 1") and "b" not in ProgramRecord.open("driver 2")
     shutil.rmtree(cache)
     record.add(["c"])
     cache.mkdir()
-    assert "a" not in ProgramRecord.open("driver 1")
+    assert "a" not in ProgramRecord.load("driver 1")
 
 
 def test_two_processes_add_to_a_record(cache: Path) -> None:
-    one, other = ProgramRecord.open("driver"), ProgramRecord.open("driver")
+    one, other = ProgramRecord.load("driver"), ProgramRecord.open("driver")
     one.add(["a"])
     other.add(["b"])
-    both = ProgramRecord.open("driver")
+    both = ProgramRecord.load("driver")
     assert "a" in both and "b" in both
 
 
 def test_a_record_that_is_too_large_begins_anew(cache: Path) -> None:
-    record = ProgramRecord.open("driver")
+    record = ProgramRecord.load("driver")
     record.add(["a"])
     assert record.path is not None
     with record.path.open("ab") as file:
         file.write(bytes(MAX_RECORD_BYTES))
-    assert "a" not in ProgramRecord.open("driver") and not record.path.exists()
+    assert "a" not in ProgramRecord.load("driver") and not record.path.exists()
 
 
 def test_there_is_no_record_without_a_cache(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("MESA_SHADER_CACHE_DISABLE", "true")
-    assert ProgramRecord.open("driver").path is None
+    assert ProgramRecord.load("driver").path is None
     monkeypatch.delenv("MESA_SHADER_CACHE_DISABLE")
-    assert ProgramRecord.open("driver").path is not None
+    assert ProgramRecord.load("driver").path is not None
     cache.rmdir()
-    assert ProgramRecord.open("driver").path is None
+    assert ProgramRecord.load("driver").path is None

@@ -30,7 +30,7 @@ class Precompiler:
     """Threads that compile programs for the context of one device, as long as there are any."""
 
     def __init__(self, driver: str) -> None:
-        self._record = ProgramRecord.open(driver)
+        self._record = ProgramRecord.load(driver)
         self._display = find_display()
         self._waiting: list[tuple[ProgramVariant, Future[float]]] = []
         self._threads: list[threading.Thread] = []

@@ -54,7 +54,7 @@ class ProgramRecord(Struct, eq=False):
     _hashes: set[bytes]
 
     @classmethod
-    def open(cls, driver: str) -> ProgramRecord:
+    def load(cls, driver: str) -> ProgramRecord:
         """Read the record of a driver, which is empty with an empty cache."""
         writable = [folder for folder in list_cache_folders() if os.access(folder, os.W_OK)]
         if not writable:
