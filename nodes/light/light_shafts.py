@@ -2,11 +2,28 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import RGBA, CameraSocket, Doc, Draw, Drawn, Field, Filter, Image, OutputSocket, Position, Slider, Trait
+from .._declare import (
+    RGBA,
+    CameraSocket,
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Filter,
+    Image,
+    OutputSocket,
+    Position,
+    Slider,
+    Trait,
+    Vector,
+)
 from ._march import surfaces
 
 _SAMPLES = {"preview": 4, "quality": 12, "reference": 64}
 """Along the way to every pixel; its neighbors lend 16 times as many."""
+
+_SIDES = ("right", "below")
+"""Where the seams of a pixel are: see shaders/lib/seam.glsl."""
 
 
 class LightShafts(Filter):
@@ -104,9 +121,18 @@ class LightShafts(Filter):
             count=_SAMPLES[self.quality],
         )
         haze = draw("light_shafts_denoise", surfaces=all_surfaces, haze=haze, result=Field())
+        haze = self._smooth(draw, all_surfaces, haze)
         gain = self.intensity * self.color[3]
         light = tuple(gain * part for part in self.color[:3])
         return {
             "out": draw.point("light_shafts", self.image, haze=haze, light=light),
             "shafts": draw.point("light_shafts_alone", self.image, haze=haze, light=light),
         }
+
+    def _smooth(self, draw: Draw, all_surfaces: Drawn, haze: Drawn) -> Drawn:
+        """Mixes the haze of both sides along contours: depth is not filtered, so that haze has jagged edges."""
+        three = Vector(width=3)
+        seams = draw("light_shafts_seams", surfaces=all_surfaces, result=three)
+        lines = {side: draw(f"light_shafts_{side}", seams=seams, edge="black", result=three) for side in _SIDES}
+        runs = draw("light_shafts_runs", seams=seams, **lines, edge="black", result=three)
+        return draw("light_shafts_smooth", haze=haze, runs=runs, **lines, edge="black", result=Field())

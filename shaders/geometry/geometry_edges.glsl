@@ -121,13 +121,9 @@ vec3 geometry_edges_below() { return seam_rounds(1); }
 
 // The seams without the steps of staircases, and folds where there is no seam.
 vec3 geometry_edges_runs() {
-    vec3 seams = seams_at(pixel);
-    if (max(seams.x, seams.y) + seams_at(pixel - ivec2(1, 0)).x + seams_at(pixel - ivec2(0, 1)).y > 0.0) seams.z = 0.0;
-    for (int rounds = max(seams.x, seams.y) > 0.0 ? 1 : 0; rounds > 0; --rounds) {
-        if (seam_is_step(pixel, 0, right_at(pixel).z)) seams.x = 0.0;
-        if (seam_is_step(pixel, 1, below_at(pixel).z)) seams.y = 0.0;
-    }
-    return seams;
+    vec3 seams = seams_at(pixel), runs = seam_runs();
+    bool alone = max(seams.x, seams.y) + seams_at(pixel - ivec2(1, 0)).x + seams_at(pixel - ivec2(0, 1)).y <= 0.0;
+    return vec3(runs.xy, alone ? seams.z : 0.0);
 }
 
 // How much of a pixel the lines of the seams near a place cover, from `first` pixels before it to one behind it. Seams

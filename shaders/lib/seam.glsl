@@ -77,6 +77,16 @@ bool seam_is_step(ivec2 at, int axis, float followed) {
     return run >= float(SEAM_SHORTEST) && SEAM_MINOR * followed < run;
 }
 
+// The seams of this pixel without the steps of staircases.
+vec3 seam_runs() {
+    vec3 seams = seams_at(pixel);
+    for (int rounds = max(seams.x, seams.y) > 0.0 ? 1 : 0; rounds > 0; --rounds) {
+        if (seam_is_step(pixel, 0, right_at(pixel).z)) seams.x = 0.0;
+        if (seam_is_step(pixel, 1, below_at(pixel).z)) seams.y = 0.0;
+    }
+    return seams;
+}
+
 // The area of a pixel on one side of a line with the unit normal `across`, `away` from the middle of the pixel.
 float seam_area(float away, vec2 across) {
     const float upright = 0.01;
@@ -106,4 +116,21 @@ vec3 seam_rounds(int axis) {
     vec3 line = vec3(0.0);
     for (int rounds = seams_at(pixel)[axis] > 0.0 ? 1 : 0; rounds > 0; --rounds) line = seam_line(pixel, axis);
     return line;
+}
+
+// The part of this pixel on its own side of the contours beside it, in passes that read `runs`, the seams without steps;
+// and the pixel on the other side.
+float seam_share(out ivec2 beyond) {
+    float share = 1.0;
+    beyond = pixel;
+    for (int side = 0; side < 4; ++side) {
+        int axis = side & 1, before = side >> 1;
+        ivec2 across = axis == 0 ? ivec2(1, 0) : ivec2(0, 1), at = pixel - before * across;
+        if (runs_at(at)[axis] <= 0.0) continue;
+        vec2 line = (axis == 0 ? right_at(at) : below_at(at)).xy;
+        float away = 0.5 + (before == 0 ? line.x : -line.x), upright = inversesqrt(1.0 + line.y * line.y);
+        float part = seam_area(away * upright, vec2(1.0, abs(line.y)) * upright);
+        if (part < share) share = part, beyond = before == 0 ? at + across : at;
+    }
+    return share;
 }

@@ -1,6 +1,7 @@
 #include "lib/bright.glsl"
 #include "lib/march.glsl"
 #include "lib/occlusion.glsl"
+#include "lib/seam.glsl"
 
 vec4 light_shafts_planes() { return march_planes(); }
 vec4 light_shafts_bounds() { return march_bounds(); }
@@ -70,6 +71,34 @@ float light_shafts_denoise() {
             total += weight;
         }
     return sum / total;
+}
+
+// Seams to the right and below where the depth jumps. On a plane its nearness does not bend, however steep it is.
+vec3 light_shafts_seams() {
+    const float jump = 0.1;  // of the nearer depth
+    vec3 seams = vec3(0.0);
+    for (int axis = 0; axis < 2; ++axis) {
+        ivec2 along = axis == 0 ? ivec2(1, 0) : ivec2(0, 1);
+        if (pixel[axis] >= extent[axis] - 1) continue;
+        vec4 near = vec4(
+            surfaces_at(max(pixel - along, 0)).x, surfaces_at(pixel).x, surfaces_at(pixel + along).x,
+            surfaces_at(min(pixel + 2 * along, extent - 1)).x
+        );
+        float bend = min(abs(near.x - 2.0 * near.y + near.z), abs(near.y - 2.0 * near.z + near.w));
+        seams[axis] = float(bend > jump * max(near.y, near.z));
+    }
+    return seams;
+}
+
+vec3 light_shafts_right() { return seam_rounds(0); }
+vec3 light_shafts_below() { return seam_rounds(1); }
+vec3 light_shafts_runs() { return seam_runs(); }
+
+// Haze is that before the surface in the middle of a pixel. At a contour, that of both sides is mixed by their areas.
+float light_shafts_smooth() {
+    ivec2 beyond;
+    float share = seam_share(beyond);
+    return mix(haze_at(beyond), haze_at(pixel), share);
 }
 
 vec4 light_shafts_alone(vec4 image, float haze, vec3 light) { return glow_alone(vec4(0.0), haze * light); }

@@ -160,3 +160,21 @@ def test_nothing_is_far_away(run):
     for empty in (np.inf, 0.0, -1.0, np.nan):
         found = haze(run, np.full(SIZE[::-1], empty), **values)
         np.testing.assert_array_equal(found, haze(run, np.full(SIZE[::-1], 1e10), **values))
+
+
+def test_contours_are_smooth(run):
+    """A ball before a wall, against 8 x 8 samples of each pixel: 0.6 of the error of whole pixels at most."""
+    (width, height), samples = SIZE, 8
+    y, x = (np.mgrid[: height * samples, : width * samples] + 0.5) / samples
+    inside = np.hypot(x - 30.3, y - 17.6) < 16.2
+    fine = np.where(inside, 4.0, 9.0)
+    values = {"light": "sun", "direction": (0.2, 0.3, 0.9), "density": 0.1, "thickness": 0.0, "quality": "reference"}
+    share = inside.reshape(height, samples, width, samples).mean((1, 3))
+    near, far = (haze(run, np.full(SIZE[::-1], depth), **values)[..., 0] for depth in (4.0, 9.0))
+    expected = share * near + (1.0 - share) * far
+    pixels = fine[samples // 2 :: samples, samples // 2 :: samples]
+    edge = (share > 0.0) & (share < 1.0)
+    found = haze(run, pixels, **values)[..., 0]
+    jagged = np.where(pixels < 5.0, near, far)
+    error, before = (np.sqrt(((picture - expected)[edge] ** 2).mean()) for picture in (found, jagged))
+    assert edge.sum() > 80 and error < 0.6 * before
