@@ -9,6 +9,7 @@ import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -29,6 +30,30 @@ if "--chunks" in sys.orig_argv:
     item_session.ItemSession.plan_task = plan_task
 """
 """Loaded by each Python of a worker (`sitecustomize`): frames that end the process that renders them."""
+
+
+SLOW = """
+import sys, time
+if "--chunks" in sys.orig_argv:
+    from halation.renderer.jobs import item_session
+    plan = item_session.ItemSession.plan_task
+    def plan_task(self, frame):
+        time.sleep(0.4)
+        return plan(self, frame)
+    item_session.ItemSession.plan_task = plan_task
+"""
+"""Loaded by each Python of a worker (`sitecustomize`): frames that take long."""
+
+
+FULL = """
+import errno, sys
+if "--chunks" in sys.orig_argv:
+    import os
+    def reserve(*_):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    os.posix_fallocate = reserve
+"""
+"""The same: a disk that is full."""
 
 
 @dataclass
@@ -142,3 +167,89 @@ def make_graph() -> dict[str, object]:
 def read_frames(folder: Path, frames: range = FRAMES) -> list[bytes]:
     """The bytes of all frames."""
     return [(folder / f"f.{frame:04d}.exr").read_bytes() for frame in frames]
+
+
+def customize(folder: Path, text: str) -> dict[str, str]:
+    """The environment of a worker all of whose Pythons run a text first."""
+    folder.mkdir()
+    (folder / "sitecustomize.py").write_text(text)
+    return {"PYTHONPATH": str(folder)}
+
+
+def render_words(farm: Farm, frames: str = "1-8") -> tuple[str, ...]:
+    """The words of a command that renders on a farm."""
+    words = ("-o", "f.####.exr", "--deterministic", "--frames", frames, "--cluster", farm.address)
+    return ("render", "shot.json", *words)
+
+
+def list_written(shot: Path) -> list[int]:
+    """The frames that are written."""
+    return sorted(int(path.name[2:6]) for path in shot.glob("f.*.exr"))
+
+
+def wait_for_frames(shot: Path, count: int, seconds: float = 60.0) -> None:
+    """Wait until so many frames are written."""
+    for _ in range(int(seconds / 0.02)):
+        if len(list_written(shot)) >= count:
+            return
+        time.sleep(0.02)
+    raise AssertionError(f"{list_written(shot)} of {count} frames")
+
+
+def check_whole(halation: Halation, shot: Path) -> None:
+    """All frames are those of one process, and nothing else is left."""
+    (shot / "one").mkdir()
+    assert halation("render", "shot.json", "-o", "one/f.####.exr", "--deterministic").code == 0
+    assert read_frames(shot) == read_frames(shot / "one")
+    assert not list(shot.glob(".halation-*"))
+
+
+class Proxy:
+    """Passes bytes between a port here and another one, until its connections are cut."""
+
+    def __init__(self, port: int) -> None:
+        self._target = port
+        self._server = socket.create_server(("127.0.0.1", 0))
+        self.port = self._server.getsockname()[1]
+        self._sockets: list[socket.socket] = []
+        threading.Thread(target=self._accept, daemon=True).start()
+
+    def cut(self) -> None:
+        """Close all connections at once; new ones are accepted."""
+        sockets, self._sockets = self._sockets, []
+        for each in sockets:
+            _shut_down(each)
+            each.close()
+
+    def close(self) -> None:
+        """Accept no more connections, and cut those that there are."""
+        self._server.close()
+        self.cut()
+
+    def _accept(self) -> None:
+        while True:
+            try:
+                near, _ = self._server.accept()
+            except OSError:
+                return
+            try:
+                far = socket.create_connection(("127.0.0.1", self._target))
+            except OSError:
+                near.close()
+                continue
+            self._sockets += [near, far]
+            for source, sink in ((near, far), (far, near)):
+                threading.Thread(target=self._pass_on, args=(source, sink), daemon=True).start()
+
+    @staticmethod
+    def _pass_on(source: socket.socket, sink: socket.socket) -> None:
+        with contextlib.suppress(OSError):
+            while chunk := source.recv(1 << 16):
+                sink.sendall(chunk)
+        _shut_down(source)
+        _shut_down(sink)
+
+
+def _shut_down(each: socket.socket) -> None:
+    with contextlib.suppress(OSError):
+        each.shutdown(socket.SHUT_RDWR)

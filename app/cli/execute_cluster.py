@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 from uuid import uuid4
@@ -12,7 +13,7 @@ from uuid import uuid4
 from msgspec import Struct
 from msgspec.structs import replace
 
-from ..errors import UsageError
+from ..errors import RenderError, UsageError
 from . import parsing
 from .cluster_progress import ClusterProgress
 from .execute import open_job_graph
@@ -45,7 +46,6 @@ class ClusterOptions(Struct, frozen=True):
 
 def execute_on_cluster(job: RenderJob, options: ClusterOptions, progress: Literal["bar", "json"], as_json: bool) -> int:
     """Render the frames of a job on a cluster, print its report, and return the exit code. Raises HalationError."""
-    from ..cluster.campaign import FrameCampaign
     from ..cluster.connection import find_dashboard, open_client
 
     started = time.perf_counter()
@@ -61,9 +61,8 @@ def execute_on_cluster(job: RenderJob, options: ClusterOptions, progress: Litera
         if options.detaches:
             return _send(client, chunk, mark_files, options, job.graph, as_json)
         reporter = ClusterProgress(len(chunk.job.frames), progress, find_dashboard(client))
-        campaign = FrameCampaign(client, options.address, chunk, mark_files, reporter, options.priority)
         with reporter:
-            report = campaign.run()
+            report = _render_frames(client, chunk, mark_files, options, reporter)
     return _print_cluster_report(report, chunk, job, time.perf_counter() - started, as_json)
 
 
@@ -117,6 +116,32 @@ def prepare_chunk(job: RenderJob, graph: Graph, options: ClusterOptions) -> tupl
         stage=stage,
     )
     return chunk, marker, history
+
+
+def _render_frames(
+    client: Client,
+    chunk: FrameChunk,
+    mark_files: Callable[[tuple[int, ...]], Mapping[str, FileMark]],
+    options: ClusterOptions,
+    reporter: ClusterProgress,
+) -> CampaignReport:
+    """Have all frames rendered. A scheduler that goes and returns gets those that are missing."""
+    from ..cluster.campaign import CampaignReport, FrameCampaign
+    from ..cluster.connection import reopen_client
+
+    report, address, frames = CampaignReport(), options.address, chunk.job.frames
+    with ExitStack() as stack:
+        while True:
+            missing = tuple(frame for frame in frames if frame not in report.seconds and frame not in report.faults)
+            rest = replace(chunk, job=replace(chunk.job, frames=missing))
+            campaign = FrameCampaign(client, address, rest, mark_files, reporter, options.priority, report=report)
+            try:
+                return campaign.run()
+            except RenderError as fault:
+                if not campaign.has_lost_scheduler:
+                    raise
+                reporter.report_note(f"{address}: the scheduler has gone: frames are sent again when it is back")
+                client = stack.enter_context(reopen_client(address, fault))
 
 
 def _send(

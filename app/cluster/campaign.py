@@ -70,7 +70,7 @@ class FrameCampaign:
     """The frames of one job on their way through a cluster. `chunk` is what all chunks share.
 
     `mark_files` describes the files that frames read. `priority` is Dask's: chunks of a higher one go first. The
-    campaign ends early once it `is_cancelled`.
+    campaign ends early once it `is_cancelled`. `report` is that of an earlier campaign, which this one continues.
     """
 
     def __init__(
@@ -82,6 +82,7 @@ class FrameCampaign:
         listener: CampaignListener,
         priority: int = 0,
         is_cancelled: Callable[[], bool] = lambda: False,
+        report: CampaignReport | None = None,
     ) -> None:
         self._client, self._address, self._listener, self._priority = client, address, listener, priority
         self._is_cancelled = is_cancelled
@@ -93,7 +94,8 @@ class FrameCampaign:
         self._sent: dict[str, tuple[Future[str], Assignment, list[str] | None]] = {}
         self._looked_at = self._heard_at = 0.0
         self._is_waiting = False
-        self.report = CampaignReport()
+        self.report = report or CampaignReport()
+        self.has_lost_scheduler = False
 
     def run(self) -> CampaignReport:
         """Have all frames rendered.
@@ -302,10 +304,10 @@ class FrameCampaign:
                 self._heard_at = now
                 self._check_new(self._workers.update(facts))
         if self._heard_at and now - self._heard_at > _LOST_SECONDS:
-            count, total = len(self.report.seconds), len(self._chunk.job.frames)
+            self.has_lost_scheduler = True
             raise RenderError(
-                f"--cluster {self._address}: the scheduler has gone; {count} of {total} frames are finished: start it "
-                "again, and run the same command with --resume"
+                f"--cluster {self._address}: the scheduler has gone; {len(self.report.seconds)} frames are finished: "
+                "start it again, and run the same command with --resume"
             )
         for key, (future, assignment, places) in list(self._sent.items()):
             if places is not None and not any(place in self._workers for place in places):

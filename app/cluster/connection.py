@@ -6,6 +6,7 @@ import contextlib
 import logging
 import os
 import re
+import time
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -21,6 +22,13 @@ if TYPE_CHECKING:
 
 CONNECT_SECONDS = 5.0
 """Seconds until a scheduler must answer: a choice, many times what a connection through a continent takes."""
+
+RETURN_SECONDS = 30.0
+"""Seconds that a job waits for a scheduler that has gone: a choice. Supervisors such as systemd start it again within a
+second, a container within ten or twenty."""
+
+_RETRY_INTERVAL = 0.5
+"""Seconds between two tries to reach a scheduler again: a choice."""
 
 _LOCAL = re.compile(r"local(?::(?P<count>\d+))?")
 
@@ -73,6 +81,22 @@ def _connect(address: str, count: int) -> Iterator[Client]:
         finally:
             with contextlib.suppress(Exception):  # whatever Dask says of a connection that is gone anyway
                 client.close(timeout=1)
+
+
+@contextmanager
+def reopen_client(address: str, fault: RenderError) -> Iterator[Client]:
+    """A connection to a scheduler that has gone, as soon as it is there again. Raises `fault` if it does not return."""
+    deadline = time.monotonic() + RETURN_SECONDS
+    with contextlib.ExitStack() as stack:
+        while True:
+            try:
+                client = stack.enter_context(_connect(address, 0))
+                break
+            except RenderError:
+                if time.monotonic() > deadline:
+                    raise fault from None
+                time.sleep(_RETRY_INTERVAL)
+        yield client
 
 
 def find_dashboard(client: Client) -> str:

@@ -4,37 +4,29 @@ from __future__ import annotations
 
 import json
 import os
+import re
+import shutil
 import signal
 import subprocess
 import time
 from pathlib import Path
 
 import pytest
-from farms import FRAMES, end_group, read_frames, start_halation
+from farms import (
+    FRAMES,
+    FULL,
+    SLOW,
+    check_whole,
+    customize,
+    end_group,
+    list_written,
+    make_graph,
+    render_words,
+    start_halation,
+    wait_for_frames,
+)
 
 pytest.importorskip("distributed", reason="Dask is not installed")
-
-SLOW = """
-import sys, time
-if "--chunks" in sys.orig_argv:
-    from halation.renderer.jobs import item_session
-    plan = item_session.ItemSession.plan_task
-    def plan_task(self, frame):
-        time.sleep(0.4)
-        return plan(self, frame)
-    item_session.ItemSession.plan_task = plan_task
-"""
-"""Loaded by each Python of a worker (`sitecustomize`): frames that take long."""
-
-FULL = """
-import errno, sys
-if "--chunks" in sys.orig_argv:
-    import os
-    def reserve(*_):
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-    os.posix_fallocate = reserve
-"""
-"""The same: a disk that is full."""
 
 OLD = """
 import halation.version
@@ -55,36 +47,48 @@ if "--chunks" in sys.orig_argv:
 """The same: a machine without OpenGL."""
 
 
-def customize(folder: Path, text: str) -> dict[str, str]:
-    """The environment of a worker all of whose Pythons run a text first."""
-    folder.mkdir()
-    (folder / "sitecustomize.py").write_text(text)
-    return {"PYTHONPATH": str(folder)}
+HUNGRY = """
+import sys
+if "--chunks" in sys.orig_argv:
+    import time
+    from halation.renderer.jobs import item_session
+    plan = item_session.ItemSession.plan_task
+    def plan_task(self, frame):
+        if frame == 3:
+            memory = bytearray(b"1") * (2 << 30)
+            time.sleep(5.0)
+        return plan(self, frame)
+    item_session.ItemSession.plan_task = plan_task
+"""
+"""The same: a frame that takes 2 GiB."""
+
+OTHER_GLSL = """
+import sys
+if "--chunks" in sys.orig_argv:
+    import os, pathlib
+    from halation.compiler import library
+    library.folder = lambda: pathlib.Path(os.environ["OTHER_SHADERS"])
+"""
+"""The same: shaders that were changed."""
+
+SHADERS = Path(__file__).parents[2] / "shaders"
 
 
-def render_words(farm, frames="1-8"):
-    words = ("-o", "f.####.exr", "--deterministic", "--frames", frames, "--cluster", farm.address)
-    return ("render", "shot.json", *words)
-
-
-def list_written(shot) -> list[int]:
-    return sorted(int(path.name[2:6]) for path in shot.glob("f.*.exr"))
-
-
-def wait_for_frames(shot, count, seconds=60.0):
-    for _ in range(int(seconds / 0.02)):
-        if len(list_written(shot)) >= count:
-            return
-        time.sleep(0.02)
-    raise AssertionError(f"{list_written(shot)} of {count} frames")
-
-
-def check_whole(halation, shot):
-    """All frames are those of one process, and nothing else is left."""
-    (shot / "one").mkdir()
-    assert halation("render", "shot.json", "-o", "one/f.####.exr", "--deterministic").code == 0
-    assert read_frames(shot) == read_frames(shot / "one")
-    assert not list(shot.glob(".halation-*"))
+def install_plug_in(folder: Path, version: str) -> Path:
+    """A folder that Python imports a plug-in with one node from."""
+    nodes, notes = folder / "acme" / "nodes" / "tone", folder / f"acme-{version}.dist-info"
+    nodes.mkdir(parents=True)
+    notes.mkdir()
+    (nodes / "dim.py").write_text(
+        "from halation.nodes import Image, Pointwise\n\n\n"
+        'class Dim(Pointwise):\n    """Darken."""\n\n    image = Image()\n    factor: float = 0.5\n'
+    )
+    shader = folder / "acme" / "shaders" / "tone"
+    shader.mkdir(parents=True)
+    (shader / "dim.glsl").write_text("vec4 acme_dim(vec4 image, float factor) { return image * factor; }\n")
+    (notes / "METADATA").write_text(f"Metadata-Version: 2.1\nName: acme\nVersion: {version}\n")
+    (notes / "entry_points.txt").write_text("[halation.nodes]\nacme = acme\n")
+    return folder
 
 
 def test_a_frame_that_ends_its_process_each_time_is_named_and_others_are_finished(halation, shot, farm):
@@ -115,6 +119,44 @@ def test_machines_that_cannot_render_the_same_are_refused_with_the_reason(halati
     assert ending.code == 1 and "no usable OpenGL: install a driver" in ending.err, ending.err
 
 
+def test_a_worker_with_another_plug_in_or_other_glsl_is_refused_with_both_versions(
+    halation, shot, make_farm, tmp_path, monkeypatch
+):
+    sites = [install_plug_in(tmp_path / f"site{version}", version) for version in ("1.0", "2.0")]
+    shaders = shutil.copytree(SHADERS, tmp_path / "shaders")
+    exposure = shaders / "color" / "exposure.glsl"
+    exposure.write_text(exposure.read_text().replace("exp2(", "exp2(0.5 * "))
+    graph = make_graph()
+    graph["nodes"]["dim"] = {"type": "acme.dim"}
+    graph["links"] |= {"dim.image": "blur.out", "outputs.image": "dim.out"}
+    (shot / "shot.json").write_text(json.dumps(graph))
+    monkeypatch.setenv("PYTHONPATH", str(sites[0]))
+    farm = make_farm()
+    farm.start_worker(PYTHONPATH=str(sites[1]))
+    glsl = customize(tmp_path / "glsl", OTHER_GLSL)["PYTHONPATH"]
+    farm.start_worker(PYTHONPATH=f"{glsl}{os.pathsep}{sites[0]}", OTHER_SHADERS=str(shaders))
+    ending = halation(*render_words(farm))
+    assert ending.code == 1 and not list_written(shot)
+    assert "it has the plug-in acme 2.0, and the job was sent by 1.0" in ending.err, ending.err
+    assert re.search(r"it has node type exposure [0-9a-f]{12}, and the job was sent by [0-9a-f]{12}", ending.err)
+    farm.start_worker(PYTHONPATH=str(sites[0]))
+    ending = halation(*render_words(farm))
+    assert ending.code == 0, ending.err
+    check_whole(halation, shot)
+
+
+def test_a_frame_that_needs_more_memory_than_its_worker_has_is_named_and_the_worker_goes_on(
+    halation, shot, make_farm, tmp_path
+):
+    farm = make_farm()
+    farm.start_worker("--memory-limit", "900MiB", **customize(tmp_path / "hungry", HUNGRY))
+    ending = halation(*render_words(farm))
+    assert ending.code == 1
+    assert "frame 3: it takes more than the 0.9 GiB of its worker each time, on 3 tries" in ending.err, ending.err
+    assert list_written(shot) == [frame for frame in FRAMES if frame != 3]
+    os.killpg(farm.workers[0], 0)  # it is there
+
+
 def test_a_killed_worker_and_a_new_one(halation, shot, make_farm, tmp_path):
     farm = make_farm()
     slow = customize(tmp_path / "slow", SLOW)
@@ -126,22 +168,6 @@ def test_a_killed_worker_and_a_new_one(halation, shot, make_farm, tmp_path):
     farm.start_worker(**slow)
     _, err = process.communicate(timeout=100)
     assert process.returncode == 0, err
-    check_whole(halation, shot)
-
-
-def test_without_its_scheduler_a_job_ends_with_a_sentence_and_goes_on_later(halation, shot, make_farm, tmp_path):
-    farm = make_farm()
-    farm.start_worker(**customize(tmp_path / "slow", SLOW))
-    process = start_halation(*render_words(farm), cwd=shot)
-    wait_for_frames(shot, 2)
-    end_group(farm.scheduler)
-    _, err = process.communicate(timeout=60)
-    assert process.returncode == 1
-    assert "the scheduler has gone" in err.splitlines()[-1] and "--resume" in err, err
-    finished = {frame: (shot / f"f.{frame:04d}.exr").stat().st_mtime_ns for frame in list_written(shot)}
-    ending = halation("render", "shot.json", "-o", "f.####.exr", "--deterministic", "--cluster", "local:1", "--resume")
-    assert ending.code == 0, ending.err
-    assert all((shot / f"f.{frame:04d}.exr").stat().st_mtime_ns == date for frame, date in finished.items())
     check_whole(halation, shot)
 
 
