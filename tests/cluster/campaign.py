@@ -102,8 +102,10 @@ def try_once(folder: Path, number: int, draw: random.Random) -> tuple[str, list[
             harms.append("full disk")
         harmed.fill()
         process = render(folder, f"{name}.json", "-o", f"run{number}/f.####.exr", "--cluster", harmed.address)
+        while not any(output.iterdir()) and process.poll() is None:  # a job that has not begun is refused instead
+            time.sleep(0.05)
         for _ in range(draw.randint(1, 3)):
-            time.sleep(draw.uniform(0.5, 4.0))
+            time.sleep(draw.uniform(0.0, 3.0))
             if process.poll() is None:
                 harms.append(draw.choice(HARMS))
                 harmed.harm(harms[-1])
