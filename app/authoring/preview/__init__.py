@@ -11,8 +11,9 @@ would ever be finished. So a run for the same panels may go on for `PATIENCE` se
 were computed from, so passes that two requests share are computed once, and nothing has to be marked as outdated.
 
 What comes first. The part of a picture that can be seen (`VisibleRegion`) is computed before the rest, which follows
-when the graph stays the same for a moment. Then come thumbnails, drawn from results that are on the device anyway, and
-last a frame that playback needs soon (`ahead`). A panel shows its last picture until the new one is ready
+when the graph stays the same for a moment. Then comes a frame that playback needs soon (`ahead`), and when nothing is
+left, thumbnails, mostly from results that are on the device anyway, and trials of code that no picture needs. A panel
+shows its last picture until the new one is ready
 (`DisplayedImages`); frames that were computed stay within a share of the memory budget (`FrameCache`), so that playing
 a range again costs nothing.
 """
