@@ -12,10 +12,9 @@ were computed from, so passes that two requests share are computed once, and not
 
 What comes first. The part of a picture that can be seen (`VisibleRegion`) is computed before the rest, which follows
 when the graph stays the same for a moment. Then comes a frame that playback needs soon (`ahead`), and when nothing is
-left, thumbnails, mostly from results that are on the device anyway, and trials of code that no picture needs. A panel
-shows its last picture until the new one is ready
-(`DisplayedImages`); frames that were computed stay within a share of the memory budget (`FrameCache`), so that playing
-a range again costs nothing.
+left, thumbnails, drawn from results that are on the device anyway, and trials of code that no picture needs. A panel
+shows its last picture until the new one is ready (`DisplayedImages`); frames that were computed stay within a share of
+the memory budget (`FrameCache`), so that playing a range again costs nothing.
 """
 
 from __future__ import annotations
