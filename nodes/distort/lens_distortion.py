@@ -10,7 +10,8 @@ _STEPS = 512
 """Of what a lens sees, from the axis to a corner."""
 
 _MISSED = 1e-3
-"""How far, in focal lengths, a point that is found may be from the one that is wanted."""
+"""How far, in focal lengths, a point that is found may be from the one that is wanted. A choice: half a pixel for a
+focal length of 500 pixels."""
 
 
 _REACH: Mapping[Kernel, int] = {"nearest": 2, "triangle": 2, "catmull-rom": 3, "mitchell": 3, "lanczos": 4}

@@ -8,7 +8,7 @@ _SMOOTH = 0.2
 """Degrees over which nothing of the glare changes much, but near its middle."""
 
 _NEAR = (6.0, 14.0)
-"""Where a smaller size takes over, in pixels of it."""
+"""Where a smaller size takes over, in pixels of it. A choice."""
 
 _DATA = Vector(width=4)
 

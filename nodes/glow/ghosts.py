@@ -23,7 +23,7 @@ _FINEST = 4.0
 """Sigma of the sharpest ghosts in pixels: they are made at half the size, and the smallest is four times smaller."""
 
 _VEIL = 0.15
-"""Sigma of the veil, in heights."""
+"""Sigma of the veil, in heights. A choice."""
 
 
 class Ghosts(Filter):

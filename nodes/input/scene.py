@@ -23,7 +23,7 @@ from .._declare import (
 )
 
 _NEAR = 0.01
-"""What is nearer than this part of the distance to the target is cut off."""
+"""What is nearer than this part of the distance to the target is cut off. A choice."""
 
 _JITTERS = 16
 """Frames until the samples of a pixel start again: as many as antialiasing over time remembers well."""
