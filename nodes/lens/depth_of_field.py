@@ -29,12 +29,12 @@ _FINEST = {"draft": 4.0, "normal": 6.0, "high": 12.0, "exact": math.inf}
 _ENDLESS = 1e9
 
 _SOFTNESS = 4.0 * 0.354
-"""What averaging and interpolating add to a disc's radius squared, in pixels of the smaller size: four times the variance
-that they add, as the variance of a disc is a quarter of its radius squared."""
+"""What averaging and interpolating add to a disc's radius squared, in pixels of the smaller size: four times the
+variance that they add, as the variance of a disc is a quarter of its radius squared."""
 
 _MIDDLE = 0.72
-"""A typical radius of a level, as a part of its largest one: the mean from a half to the whole, evenly by octaves, which
-is 1 / (2 ln 2)."""
+"""A typical radius of a level, as a part of its largest one: the mean from a half to the whole, evenly by octaves,
+which is 1 / (2 ln 2)."""
 
 
 class DepthOfField(Filter):

@@ -13,8 +13,8 @@ TILE = 16
 """Pixels across a tile."""
 
 FEW = 8
-"""Up to so many lights, each pixel loops over all of them, and no tiles are made. A choice: in the preset night_relight at
-960x540, with a reach of 1, tiles take 0.93, 0.89, 0.79 and 0.68 of the time for 2, 4, 8 and 16 lights of the swarm;
+"""Up to so many lights, each pixel loops over all of them, and no tiles are made. A choice: in the preset night_relight
+at 960x540, with a reach of 1, tiles take 0.93, 0.89, 0.79 and 0.68 of the time for 2, 4, 8 and 16 lights of the swarm;
 lights that reach farther gain less."""
 
 _BITS = 24
