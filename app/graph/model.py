@@ -131,12 +131,12 @@ class Settings:
     """Settings of the whole graph.
 
     `size`: the canvas of nodes without image inputs; by default that of the first image read, else 1920x1080.
-    `frames`: the first and last frame; by default those of the first sequence that is read, else frame 1 alone.
-    `rate`: frames per second. `preroll`: how many earlier frames are rendered for nodes with a memory; by default all
-    from the first one, so that a frame does not depend on where a render starts. `reference_height`: with it, numbers
-    of lengths in pixels are pixels of a picture of this height, so that the look is the same at every size; without it
-    they are pixels of the picture. It holds for one body: each group has its own. `color`: color management, also in
-    groups. `allow`: reasons why a warning is intended, by `rule` or `rule:node`.
+    `frames`: the first and last frame; by default those of the first sequence that is read, else from 1 to the last
+    key. `rate`: frames per second. `preroll`: how many earlier frames are rendered for nodes with a memory; by default
+    all from the first one, so that a frame does not depend on where a render starts. `reference_height`: with it,
+    numbers of lengths in pixels are pixels of a picture of this height, so that the look is the same at every size;
+    without it they are pixels of the picture. It holds for one body: each group has its own. `color`: color management,
+    also in groups. `allow`: reasons why a warning is intended, by `rule` or `rule:node`.
     """
 
     size: Size | None = None

@@ -299,7 +299,7 @@ class Draw(Protocol):
 
     def expand_text(self, text: str, picture: Socket, /) -> str:
         """A text with its tokens replaced, such as `{frame}`; those about a file are about the one that is the source
-        of `picture`. Raises GraphError for a token that nobody knows.
+        of `picture`. Raises GraphError for an unknown token.
         """
         ...
 

@@ -13,11 +13,11 @@ from .values import Doc, ItemKind, Items, Slider, Swatch, read_value
 class LightGroup(Struct, frozen=True):
     """The light of some of the lights of a render, which the renderer wrote as a layer of its own."""
 
-    on: Annotated[bool, Doc("Whether its light is there.")] = True
-    solo: Annotated[bool, Doc("While any group is solo, only those are there.")] = False
-    color: Annotated[tuple[float, float, float], Swatch(), Doc("Multiplied by its light.")] = (1.0, 1.0, 1.0)
+    on: Annotated[bool, Doc("Whether the light of the group is in the picture.")] = True
+    solo: Annotated[bool, Doc("While any group is solo, only solo groups are in the picture.")] = False
+    color: Annotated[tuple[float, float, float], Swatch(), Doc("Factor on the light of the group.")] = (1.0, 1.0, 1.0)
     temperature: Temperature = 0.0
-    exposure: Annotated[float, Slider(-6.0, 6.0, unit="EV", doc="Doubles its light with each stop.")] = 0.0
+    exposure: Annotated[float, Slider(-6.0, 6.0, unit="EV", doc="Doubles the light of the group with each stop.")] = 0.0
 
 
 _HINTS = get_type_hints(LightGroup, include_extras=True)

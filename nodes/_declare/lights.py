@@ -32,13 +32,14 @@ class LightKind(StrEnum):
     TUBE = "tube"
 
 
-_Place = Annotated[Triple, Slider(-10.0, 10.0, unit="scene", doc="Where it is in the world.")]
+_Place = Annotated[Triple, Slider(-10.0, 10.0, unit="scene", doc="Where the light is in the world.")]
 _Way = Annotated[
     Triple,
-    Slider(-1.0, 1.0, unit="ratio", doc="The direction in which it shines, in the world; its length is of no account."),
+    Slider(-1.0, 1.0, unit="ratio", doc="The direction of the light in the world. Its length has no effect."),
 ]
 _Reach = Annotated[
-    float, Slider(0.0, 20.0, unit="scene", minimum=0.0, doc="The distance at which it has faded out; 0: no limit.")
+    float,
+    Slider(0.0, 20.0, unit="scene", minimum=0.0, doc="The distance at which its light has faded out; 0: no limit."),
 ]
 Temperature = Annotated[
     float,
@@ -71,35 +72,42 @@ class Light(Struct, frozen=True):
             -50.0,
             50.0,
             unit="scene",
-            doc="How strong it is. In W/sr: the light at a distance d is the intensity / d². Of a sun in W/m², the "
-            "same everywhere. Below 0 it takes light away.",
+            doc="How strong the light is. In W/sr: the light at a distance d is the intensity / d². Of a sun in W/m², "
+            "the same everywhere. Below 0 it takes light away.",
         ),
     ] = 10.0
     reach: _Reach = 0.0
     inner: Annotated[
         float,
-        Slider(0.0, 90.0, unit="deg", minimum=0.0, maximum=180.0, doc="Half the angle of the cone of full intensity."),
+        Slider(
+            0.0,
+            90.0,
+            unit="deg",
+            minimum=0.0,
+            maximum=180.0,
+            doc="Half the angle of the cone of full intensity.",
+        ),
     ] = 20.0
     outer: Annotated[
         float, Slider(0.0, 90.0, unit="deg", minimum=0.0, maximum=180.0, doc="Half the angle of the whole cone.")
     ] = 30.0
     size: Annotated[
         float,
-        Slider(0.0, 2.0, unit="scene", minimum=0.0, doc="The radius. A larger one has wider reflections."),
+        Slider(0.0, 2.0, unit="scene", minimum=0.0, doc="The radius of the light. A larger one has wider reflections."),
     ] = 0.1
-    on: Annotated[bool, Doc("Whether it shines.")] = True
+    on: Annotated[bool, Doc("Whether the light shines.")] = True
     temperature: Temperature = 0.0
     exposure: Annotated[float, Slider(-6.0, 6.0, unit="EV", doc="Doubles the intensity with each stop.")] = 0.0
-    solo: Annotated[bool, Doc("While any light is solo, only those shine.")] = False
-    width: Annotated[float, Slider(0.0, 5.0, unit="scene", minimum=0.0, doc="From its left to its right edge.")] = 1.0
-    height: Annotated[float, Slider(0.0, 5.0, unit="scene", minimum=0.0, doc="From its lower to its upper edge.")] = 1.0
+    solo: Annotated[bool, Doc("While any light is solo, only solo lights shine.")] = False
+    width: Annotated[float, Slider(0.0, 5.0, unit="scene", minimum=0.0, doc="From left edge to right edge.")] = 1.0
+    height: Annotated[float, Slider(0.0, 5.0, unit="scene", minimum=0.0, doc="From lower edge to upper edge.")] = 1.0
     length: Annotated[float, Slider(0.0, 5.0, unit="scene", minimum=0.0, doc="From one end to the other.")] = 1.0
     roll: Annotated[
-        float, Slider(-180.0, 180.0, unit="deg", doc="Turns it around its direction. At 0 its width is level.")
+        float, Slider(-180.0, 180.0, unit="deg", doc="Turns the light around its direction. At 0 its width is level.")
     ] = 0.0
     angle: Annotated[
         float,
-        Slider(0.0, 20.0, unit="deg", minimum=0.0, maximum=90.0, doc="How large it looks: softens its shadows."),
+        Slider(0.0, 20.0, unit="deg", minimum=0.0, maximum=90.0, doc="How large the light looks: softens its shadows."),
     ] = 0.5
     shadow: Annotated[bool, Doc("Casts shadows of what the picture shows, which are soft if the light has a size.")] = (
         False

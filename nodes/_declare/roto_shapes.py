@@ -50,10 +50,10 @@ class RotoShape(Struct, frozen=True):
         Doc("A row for each point: x, y, the two tangents as offsets, and a feather in addition to that of the shape."),
     ] = make_ellipse(0.5, 0.5, 0.4, 0.5)
     mode: Annotated[
-        Literal["union", "subtract", "intersect"], Doc("How it is combined with the shapes before it, by name.")
+        Literal["union", "subtract", "intersect"], Doc("How the shape is combined with those before it, by name.")
     ] = "union"
-    on: Annotated[bool, Doc("Whether it counts.")] = True
-    opacity: Annotated[Fraction, Doc("How much of it counts.")] = 1.0
+    on: Annotated[bool, Doc("Whether the shape counts.")] = True
+    opacity: Annotated[Fraction, Doc("How much of the shape counts.")] = 1.0
     feather: Annotated[
         float,
         Slider(
@@ -61,15 +61,18 @@ class RotoShape(Struct, frozen=True):
             doc="How wide the soft edge is, half of it inside and half outside.",
         ),
     ] = 0.0  # fmt: skip
-    invert: Annotated[bool, Doc("Cover everything outside of it.")] = False
+    invert: Annotated[bool, Doc("Cover everything outside of the shape.")] = False
     position: Annotated[
-        tuple[float, float], Slider(-1.0, 1.0, unit="ratio", doc="Moves it, in fractions of the picture.")
+        tuple[float, float], Slider(-1.0, 1.0, unit="ratio", doc="Moves the shape, in fractions of the picture.")
     ] = (0.0, 0.0)
     rotation: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="Turns it about the pivot, clockwise.")] = 0.0
     scale: Annotated[
-        tuple[float, float], Slider(0.0, 3.0, unit="ratio", doc="Makes it larger or smaller about the pivot.")
+        tuple[float, float], Slider(0.0, 3.0, unit="ratio", doc="Factor on the size of the shape, about the pivot.")
     ] = (1.0, 1.0)
-    pivot: Annotated[tuple[float, float], Handle(), Doc("What it turns and grows about.")] = (0.5, 0.5)
+    pivot: Annotated[tuple[float, float], Handle(), Doc("The point about which it turns and grows.")] = (
+        0.5,
+        0.5,
+    )
     lifetime: Annotated[Literal["all", "range"], Doc("The frames at which it counts: all, or from first to last.")] = (
         "all"
     )

@@ -4,8 +4,9 @@
 // The luminance of a color in the working space.
 float luminance(vec3 rgb) { return dot(rgb, LUMINANCE_WEIGHTS); }
 
-// The largest or the smallest channel.
+// The largest channel.
 float largest(vec3 v) { return max(max(v.r, v.g), v.b); }
+// The smallest channel.
 float smallest(vec3 v) { return min(min(v.r, v.g), v.b); }
 
 // The sRGB curve (IEC 61966-2-1). Negative light is mirrored, so that encoding and decoding are inverse for all

@@ -23,7 +23,7 @@ vec4 formula_divide(vec4 a, vec4 b) {
     return formula_where(valid, a / mix(vec4(1.0), b, valid));
 }
 
-// The rest of a / b, with the sign of b.
+// The remainder of a / b, with the sign of b.
 vec4 formula_mod(vec4 a, vec4 b) {
     bvec4 valid = notEqual(b, vec4(0.0));
     vec4 divisor = mix(vec4(1.0), b, valid);

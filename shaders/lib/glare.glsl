@@ -11,9 +11,9 @@ vec4 glare_light(vec4 image) {
     return vec4(clamp(finite(image).rgb, -GLARE_BRIGHTEST, GLARE_BRIGHTEST), 1.0);
 }
 
-// The first of the 2 * `factor` pixels along each axis from which a smaller pixel collects light; and its share of one
-// of them.
+// The first of the 2 * `factor` pixels along each axis from which a smaller pixel collects light.
 ivec2 glare_first(int factor) { return (pixel - 1) * factor - factor / 2; }
+// The share of a smaller pixel in the light of one of these pixels.
 float glare_share(ivec2 p, int factor) {
     vec2 share = 1.0 - abs((vec2(p) + 0.5) / float(factor) - 1.0);
     return share.x * share.y;

@@ -1,4 +1,4 @@
-// Grey morphology: the largest or the smallest of the pixels around one, found from `spans` of 1, 2, 4, ... pixels in a
+// Gray morphology: the largest or the smallest of the pixels around one, found from `spans` of 1, 2, 4, ... pixels in a
 // row. Two of these, which overlap, cover any length.
 #include "lib/finite.glsl"
 

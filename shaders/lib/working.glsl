@@ -3,6 +3,7 @@
 
 const vec3 LUMINANCE_WEIGHTS = vec3(0.2126, 0.7152, 0.0722);  // ITU-R BT.709-6
 
-// Conversions between the working space and linear Rec.709, for formulas that are defined for Rec.709 only.
+// A color of the working space in linear Rec.709, for formulas that are defined for Rec.709 only.
 vec3 to_rec709(vec3 rgb) { return rgb; }
+// The inverse of to_rec709().
 vec3 from_rec709(vec3 rgb) { return rgb; }

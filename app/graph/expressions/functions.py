@@ -151,7 +151,7 @@ FUNCTIONS: Mapping[str, ExpressionFunction] = MappingProxyType(
             ExpressionFunction("ceil(x)", "the whole number at or above x", (1,), math.ceil),
             ExpressionFunction("round(x)", "the nearest whole number, halves away from zero", (1,), round_keys),
             ExpressionFunction("fract(x)", "x without its whole part", (1,), _fract),
-            ExpressionFunction("mod(x, y)", "the rest of x / y, with the sign of y", (2,), operator.mod),
+            ExpressionFunction("mod(x, y)", "the remainder of x / y, with the sign of y", (2,), operator.mod),
             ExpressionFunction("min(a, b, ...)", "the smallest", _VARIADIC, min),
             ExpressionFunction("max(a, b, ...)", "the largest", _VARIADIC, max),
             ExpressionFunction(
