@@ -104,15 +104,23 @@ def explain(
     # Planned as for one EXR file per output.
     request = replace(request, by_rows=frozenset(request.targets or opened_graph.outputs))
     plan = compiler.compile_graph(opened_graph, request, provider, target=target, precision=parsed_precision)
-    lengths = () if dot else compiler.resolve_lengths(opened_graph, request, provider)
-    if as_json:
-        print_json({**compiler.plan_as_json(plan), "lengths": [_length_facts(item) for item in lengths]})
-    elif dot:
+    if dot:
         print(compiler.write_dot(plan))
     else:
-        views = _describe_views(opened_graph, plan, provider)
-        print(compiler.explain(plan, views), *(f"length    {item}" for item in lengths), sep="\n")
+        _print_plan(opened_graph, plan, request, provider, as_json)
     return 0
+
+
+def _print_plan(graph: Graph, plan: Plan, request: Request, provider: LazyResourceProvider, as_json: bool) -> None:
+    """Print a plan, and how many pixels each length of the graph is."""
+    from .. import compiler
+
+    lengths = compiler.resolve_lengths(graph, request, provider)
+    if as_json:
+        print_json({**compiler.plan_as_json(plan), "lengths": [_length_facts(item) for item in lengths]})
+    else:
+        views = _describe_views(graph, plan, provider)
+        print(compiler.explain(plan, views), *(f"length    {item}" for item in lengths), sep="\n")
 
 
 def _length_facts(length: ResolvedLength) -> dict[str, Any]:

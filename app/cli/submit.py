@@ -73,16 +73,7 @@ def submit(
     sandbox: Sandbox,
 ) -> int:
     """Write files for render farms, which share the frames of a graph among machines."""
-    from ..resources.atomic_write import write_text_atomically
-    from .farm_files import (
-        MAX_MATRIX_TASKS,
-        MAX_TASKS,
-        FarmJob,
-        divide_frames,
-        write_actions,
-        write_openjd,
-        write_slurm,
-    )
+    from .farm_files import FarmJob
 
     if str(graph) == "-":
         raise UsageError("-: a farm cannot read standard input: name a graph file")
@@ -90,23 +81,41 @@ def submit(
         raise UsageError("no file is named: write --openjd job.yaml, --slurm job.sh or --actions workflow.yml")
     chosen_frames, is_shared = _choose_frames(graph, inputs, sets, node, frames, output, sandbox)
     words = tuple(_list_words(graph, output, inputs, sets, node, size, scale, precision, memory, view))
+    job = FarmJob(graph.stem, words, (), gpu, parsing.parse_memory(memory))
+    frames_per_task = chunk if is_shared else len(chosen_frames)
+    task_counts = _write_files(job, chosen_frames, frames_per_task, (openjd, slurm, actions), sandbox)
+    if as_json:
+        print_json({"written": list(task_counts), "frames": len(chosen_frames), "tasks": task_counts})
+    for path, count in task_counts.items() if not as_json else ():
+        print_note(f"{path}  {len(chosen_frames)} frames in {write_count(count, 'task')}")
+    return 0
+
+
+def _write_files(
+    job: FarmJob, frames: Sequence[int], frames_per_task: int, paths: tuple[Path | None, ...], sandbox: Sandbox
+) -> dict[str, int]:
+    """Write those files of a job that have a path: for Open Job Description, Slurm and GitHub Actions.
+
+    Returns how many tasks each has, by its path.
+    """
+    from msgspec.structs import replace
+
+    from ..resources.atomic_write import write_text_atomically
+    from .farm_files import MAX_MATRIX_TASKS, MAX_TASKS, divide_frames, write_actions, write_openjd, write_slurm
+
+    openjd, slurm, actions = paths
     writers: tuple[tuple[Path | None, Callable[[FarmJob], str], int], ...] = (
-        (openjd, lambda job: write_openjd(job, openjd.parent if openjd else Path()), MAX_TASKS),
+        (openjd, lambda chunked: write_openjd(chunked, openjd.parent if openjd else Path()), MAX_TASKS),
         (slurm, write_slurm, MAX_TASKS),
         (actions, write_actions, MAX_MATRIX_TASKS),
     )
     task_counts: dict[str, int] = {}
     for path, write, most in writers:
         if path is not None:
-            chunks = divide_frames(chosen_frames, chunk if is_shared else len(chosen_frames), most)
-            job = FarmJob(graph.stem, words, chunks, gpu, parsing.parse_memory(memory))
-            write_text_atomically(path, write(job), sandbox)
+            chunks = divide_frames(frames, frames_per_task, most)
+            write_text_atomically(path, write(replace(job, chunks=chunks)), sandbox)
             task_counts[str(path)] = len(chunks)
-    if as_json:
-        print_json({"written": list(task_counts), "frames": len(chosen_frames), "tasks": task_counts})
-    for path, count in task_counts.items() if not as_json else ():
-        print_note(f"{path}  {len(chosen_frames)} frames in {write_count(count, 'task')}")
-    return 0
+    return task_counts
 
 
 def _choose_frames(
