@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 from typing import TYPE_CHECKING, Annotated
 
@@ -70,9 +69,9 @@ def _follow(board: JobBoard, name: str, as_json: bool) -> int:
             break
         time.sleep(_FOLLOW_INTERVAL)
     if as_json:
-        import msgspec
+        from ..resources.struct_json import write_struct
 
-        print(json.dumps(msgspec.to_builtins(status)))
+        print(write_struct(status))
     for note in status.notes:
         print_note(note)
     for frame, sentence in status.faults.items():

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from typing import Any, Literal
 
-import msgspec
 from msgspec import Struct, field
 
-from ..errors import UsageError
 from ..renderer.jobs.render_job import RenderJob
 from ..renderer.jobs.shared_results import StoredMemory
+from ..resources.struct_json import parse_struct, read_struct, write_struct
 
 
 class FileMark(Struct, frozen=True):
@@ -80,15 +78,12 @@ class FrameChunk(Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=
 
     def to_json(self) -> str:
         """The chunk as one line of JSON in ASCII."""
-        return json.dumps(msgspec.to_builtins(self))
+        return write_struct(self)
 
     @staticmethod
     def from_json(text: str) -> FrameChunk:
         """The chunk in a text of `to_json`. Raises UsageError for any other text."""
-        try:
-            return msgspec.convert(json.loads(text), FrameChunk)
-        except (ValueError, RecursionError) as fault:
-            raise UsageError(f"the text is not a chunk of frames: {fault}") from None
+        return parse_struct(text, FrameChunk, "the text is not a chunk of frames")
 
 
 class ChunkReport(Struct, frozen=True, omit_defaults=True):
@@ -111,9 +106,9 @@ class ChunkReport(Struct, frozen=True, omit_defaults=True):
 
     def to_json(self) -> str:
         """The report as a line of JSON."""
-        return json.dumps(msgspec.to_builtins(self))
+        return write_struct(self)
 
     @staticmethod
     def from_json(text: str) -> ChunkReport:
         """The report in a text of `to_json`."""
-        return msgspec.convert(json.loads(text), ChunkReport, strict=False)
+        return read_struct(text, ChunkReport, strict=False)

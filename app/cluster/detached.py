@@ -8,7 +8,6 @@ If the worker with the campaign goes, Dask runs it again on another one, and fin
 from __future__ import annotations
 
 import contextlib
-import json
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, cast
@@ -19,6 +18,7 @@ from msgspec import Struct, field
 from msgspec.structs import replace
 
 from ..errors import UsageError
+from ..resources.struct_json import read_struct, write_struct
 from .campaign import FrameCampaign
 from .chunk import FileMark, FrameChunk
 from .worker_task import make_cancel_check, read_version
@@ -65,7 +65,7 @@ def run_campaign(text: str) -> str:
     """Have the frames of a `DetachedCampaign` rendered by the workers here; its `JobStatus`. Both are JSON."""
     from distributed import get_worker, worker_client
 
-    campaign = msgspec.convert(json.loads(text), DetachedCampaign, strict=False)
+    campaign = read_struct(text, DetachedCampaign, strict=False)
     worker, marks = get_worker(), campaign.chunk.marks
     is_cancelled = make_cancel_check(worker)
     listener = _EventWriter(worker, campaign)
@@ -86,7 +86,7 @@ def run_campaign(text: str) -> str:
         report = frames.run()
     faults = {str(frame): str(facts["message"]) for frame, facts in sorted(report.faults.items())}
     state: JobState = "failed" if faults else "finished"
-    return json.dumps(msgspec.to_builtins(listener.describe(report.seconds, state, faults)))
+    return write_struct(listener.describe(report.seconds, state, faults))
 
 
 def send_campaign(client: Client, campaign: DetachedCampaign, graph: str) -> str:
@@ -99,7 +99,7 @@ def send_campaign(client: Client, campaign: DetachedCampaign, graph: str) -> str
         raise UsageError(f"--detach: no worker can take the job: {reasons}")
     name = f"{JOB_PREFIX}{uuid4().hex[:6]}"
     campaign = replace(campaign, name=name)
-    text = json.dumps(msgspec.to_builtins(campaign))
+    text = write_struct(campaign)
     places = roster.usable if roster.refusals else None
     future = client.submit(run_campaign, text, key=name, pure=False, workers=places, priority=campaign.priority)
     client.set_metadata([name], {"graph": graph, "frames": len(campaign.chunk.job.frames)})
@@ -126,7 +126,7 @@ class JobBoard:
         while future.status == "pending" and time.monotonic() < deadline:  # the scheduler answers a moment later
             time.sleep(0.01)
         if future.status == "finished":
-            return msgspec.convert(json.loads(future.result()), JobStatus)
+            return read_struct(future.result(), JobStatus)
         facts = cast("Mapping[str, Any]", self._client.get_metadata([name], {"graph": "", "frames": 0}))
         events = cast("Sequence[tuple[float, Any]]", self._client.get_events(name))
         status = msgspec.convert(events[-1][1], JobStatus) if events else None

@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 from typing import Any, Literal
 
-import msgspec
 from msgspec import Struct, field
 
 from ..errors import HalationError, UsageError
+from ..resources.struct_json import read_struct
 
 MAX_LINE_BYTES = 2**27
 """Bytes of one request: a picture of 8 MP in four floats as base64 is 179 MB, one of 4 MP fits. Larger ones go by
@@ -42,7 +42,7 @@ class ServiceRequest(Struct, frozen=True, forbid_unknown_fields=True, rename={"a
 def parse_request(line: bytes) -> ServiceRequest:
     """The request in a line. Raises UsageError that says what is wrong with it."""
     try:
-        return msgspec.convert(json.loads(line), ServiceRequest)
+        return read_struct(line, ServiceRequest)
     except (ValueError, RecursionError) as fault:
         raise UsageError(
             f'the line is not a request ({fault}): write {{"do": "render", "graph": "look.json", ...}}'

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from typing import Self
 
-import msgspec
 from halation.nodes import Size
 from msgspec import Struct
 
 from ...resources.render_choices import Dither, Form, Precision
+from ...resources.struct_json import read_struct, write_struct
 
 
 class PictureSettings(Struct, frozen=True, kw_only=True, omit_defaults=True):
@@ -31,7 +30,7 @@ class PictureSettings(Struct, frozen=True, kw_only=True, omit_defaults=True):
 
     def to_json(self) -> str:
         """The settings as one line of JSON in ASCII, which can hold names of files in any encoding."""
-        return json.dumps(msgspec.to_builtins(self))
+        return write_struct(self)
 
 
 class RecordedSettings(PictureSettings, frozen=True, kw_only=True, omit_defaults=True):
@@ -49,4 +48,4 @@ class RecordedSettings(PictureSettings, frozen=True, kw_only=True, omit_defaults
     @classmethod
     def from_json(cls, text: str) -> Self:
         """The settings in a text of `to_json`; names that this version does not know are ignored. Raises ValueError."""
-        return msgspec.convert(json.loads(text), cls)
+        return read_struct(text, cls)

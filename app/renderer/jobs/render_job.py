@@ -6,18 +6,16 @@ decides which pixels are made and where they go. How progress is shown is not pa
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Mapping
 from pathlib import Path
 
-import msgspec
 from msgspec import field
 
-from ...errors import UsageError
 from ...graph.frames import is_video
 from ...resources.render_choices import DEFAULT_TIMEOUT, Dither
 from ...resources.sandbox import Sandbox
+from ...resources.struct_json import parse_struct
 from .picture_settings import PictureSettings
 from .render_entry import RenderEntry
 
@@ -68,10 +66,7 @@ class RenderJob(PictureSettings, frozen=True, kw_only=True, omit_defaults=True, 
     @staticmethod
     def from_json(text: str) -> RenderJob:
         """The job in a text of `to_json`. Raises UsageError for any other text."""
-        try:
-            return msgspec.convert(json.loads(text), RenderJob)
-        except (ValueError, RecursionError) as fault:
-            raise UsageError(f"standard input is not a render job: {fault}") from None
+        return parse_struct(text, RenderJob, "standard input is not a render job")
 
 
 def worker_command() -> list[str]:
