@@ -44,6 +44,7 @@ _VISIBLE = (
     "bench",
     "export",
     "doctor",
+    "cache",
     "desktop",
 )
 _HIDDEN = ("export-isf", "git-driver", "thumbnail", "worker")
@@ -59,6 +60,7 @@ WITHOUT_ROOT = MappingProxyType(
         "schema": "it reads no file",
         "jobs": "it reads no file",
         "doctor": "it reads no files but those that every command reads",
+        "cache": "it reads no files but those of the driver, and an archive",
         "desktop": "it reads no files but those of Halation",
         "thumbnail": "it reads only from the folder of its file",
         "git-setup": "it reads no graph but those of the repository, and writes the configuration of git",

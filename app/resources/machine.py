@@ -60,3 +60,14 @@ def resident_memory(process: int) -> int:
         return int(Path(f"/proc/{process}/statm").read_text("ascii").split()[1]) * os.sysconf("SC_PAGE_SIZE")
     except (OSError, ValueError, IndexError):
         return 0
+
+
+def describe_processor() -> str:
+    """The model and the abilities of the processor, of which machine code depends; "" where the system does not say."""
+    try:
+        with Path("/proc/cpuinfo").open(encoding="utf-8", errors="replace") as file:
+            text = file.read(8192)  # the first processor: others are like it, and a large machine has hundreds
+    except OSError:
+        return ""
+    lines = re.findall(r"^(?:model name|flags|Features|CPU part)\s*:\s*(.*)$", text.partition("\n\n")[0], re.MULTILINE)
+    return "\n".join(lines)

@@ -81,6 +81,7 @@ OPENERS = {
     "regression/toml_tables.py": "the same",
     "regression/report.py": "the template of the page",
     "renderer/execution/progress_beacon.py": "the heartbeat",
+    "renderer/opengl/cache_archive.py": "files of the driver's cache",
     "renderer/opengl/shader_cache.py": "hashes of programs, in the cache of the driver, which writes there too",
     "watch/reloading.py": "the modules of Halation",
 }
@@ -107,6 +108,7 @@ UNRESTRICTED = {
     "editor/start/recent.py": "small pictures that the editor keeps",
     "editor/toolkit/thumbnails.py": "small pictures that the editor keeps",
     "editor/window/screenshot.py": "where the user of the editor says",
+    "renderer/opengl/cache_archive.py": "files of the driver's cache, by names that it has checked",
     "renderer/calibration.py": "two nodes of ours, which name no file",
     "watch/watching.py": "shaders and nodes of Halation",
 }

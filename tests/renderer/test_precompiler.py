@@ -139,7 +139,7 @@ def test_a_record_belongs_to_one_driver_and_to_its_cache(cache: Path) -> None:
     record = ProgramRecord.load("driver 1")
     record.add(["a", "b"])
     assert "a" in record and "c" not in record
-    assert "b" in ProgramRecord.load("driver 1") and "b" not in ProgramRecord.open("driver 2")
+    assert "b" in ProgramRecord.load("driver 1") and "b" not in ProgramRecord.load("driver 2")
     shutil.rmtree(cache)
     record.add(["c"])
     cache.mkdir()
@@ -147,7 +147,7 @@ def test_a_record_belongs_to_one_driver_and_to_its_cache(cache: Path) -> None:
 
 
 def test_two_processes_add_to_a_record(cache: Path) -> None:
-    one, other = ProgramRecord.load("driver"), ProgramRecord.open("driver")
+    one, other = ProgramRecord.load("driver"), ProgramRecord.load("driver")
     one.add(["a"])
     other.add(["b"])
     both = ProgramRecord.load("driver")
@@ -170,3 +170,15 @@ def test_there_is_no_record_without_a_cache(cache: Path, monkeypatch: pytest.Mon
     assert ProgramRecord.load("driver").path is not None
     cache.rmdir()
     assert ProgramRecord.load("driver").path is None
+
+
+def test_a_machine_with_a_carried_cache_compiles_nothing(tmp_path: Path) -> None:
+    first = render(tmp_path / "first")
+    for folder, option in (("first", "--export"), ("second", "--import")):
+        (tmp_path / folder).mkdir(exist_ok=True)
+        command = [sys.executable, "-m", "halation.cli", "cache", option, str(tmp_path / "cache.zip")]
+        variables = {name: text for name, text in os.environ.items() if name not in DISABLING}
+        subprocess.run(command, env={**variables, "MESA_SHADER_CACHE_DIR": str(tmp_path / folder)}, check=True)
+    second = render(tmp_path / "second")
+    assert second["count"] == 0 and second["pixels"] == first["pixels"]
+    assert {Path(name).name for name in second["after"]} == {Path(name).name for name in first["after"]}

@@ -23,6 +23,7 @@ from ...compiler import Target
 from ...compiler.devices import is_software
 from ...errors import DeviceError, UsageError
 from ...resources.color_program import LookupTable
+from ...resources.machine import describe_processor
 from ...resources.mesh import Mesh
 from ..device import Bindings, DeviceProgram, DeviceResource, DeviceTexture, PixelRect, ProgramVariant, TextureDepth
 from .mesh import OpenGLMesh, create_mesh
@@ -240,7 +241,7 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
 
     @cached_property
     def _precompiler(self) -> Precompiler:
-        return Precompiler(f"{self.target.renderer}\0{self.driver}")
+        return Precompiler(f"{self.target.renderer}\0{self.driver}\0{describe_processor()}")
 
     @cached_property
     def _timer(self) -> moderngl.Query:
