@@ -15,18 +15,24 @@ from halation.editor.window.painting import measure_window
 from halation.editor.window.window import Window
 from halation.resources.atomic_write import write_text_atomically
 from halation.resources.sandbox import UNRESTRICTED
+from imgui_bundle import imgui
 
 
 def main(graph: Path, report: Path, state: Path) -> None:
     """Open a graph until the window is closed."""
     window = Window(graph, {}, UNRESTRICTED, version=(4, 5), state=state, size=(1200, 700))
     window.params.ini_disable = True
+    window.params.imgui_window_params.enable_viewports = True
     before = window.params.callbacks.after_swap
 
     def write_report() -> None:  # when the frame is shown: an idle editor may not draw another one
         if before is not None:
             before()
-        places = {name: tuple(map(float, place)) for name, place in window.editor.places.items()}
+        corner = imgui.get_main_viewport().pos
+        places = {
+            name: (left - corner.x, top - corner.y, right - corner.x, bottom - corner.y)
+            for name, (left, top, right, bottom) in window.editor.places.items()
+        }
         editor = window.editor
         facts = {
             "frame": window.frames,
@@ -35,7 +41,8 @@ def main(graph: Path, report: Path, state: Path) -> None:
             "path": str(editor.session.path),
             "steps": list(editor.session.history.steps),
             "selection": [element.name for element in editor.session.selection],
-            "size": window.editor.places["Timeline"][2:],
+            "size": measure_window(),
+            "windows": imgui.get_platform_io().viewports.size(),
             "black": float((window.device.read_window(measure_window()) == 0).all(2).mean()),
             "sentences": [entry.sentence for entry in editor.log.entries],
         }

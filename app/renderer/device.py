@@ -249,11 +249,14 @@ class Device(Protocol):
         ...
 
     def read_window_pixel(self) -> tuple[int, int, int]:
-        """The pixel at the lower left corner of the window."""
+        """The pixel at the lower left corner of the window; the one right of it turns black."""
         ...
 
     def read_window(self, size: tuple[int, int]) -> np.ndarray:
-        """A window of that size as it was shown last: [height, width, 3] of 8 bits, row 0 on top."""
+        """A window of that size as it was shown last: [height, width, 3] of 8 bits, row 0 on top.
+
+        The second pixel of the last row turns black, in the window too.
+        """
         ...
 
     def close(self) -> None:

@@ -149,13 +149,20 @@ def test_an_artist_at_a_real_display(tmp_path: Path) -> None:
 
 
 @pytest.mark.timeout(300)
-def test_a_window_has_all_of_its_pixels_after_the_window_manager_has_changed_its_size(tmp_path: Path) -> None:
+def test_a_panel_is_torn_off_and_the_window_has_all_of_its_pixels_after_its_size_has_changed(tmp_path: Path) -> None:
     report = tmp_path / "report.json"
     script = Path(__file__).parents[1] / "display_editor.py"
     words = (sys.executable, script, presets.paths()[0], report, tmp_path / "state")
     with open_display() as environment, run_process(*words, env=environment):
         desk = Desktop(environment, report)
         desk.point_at("viewer image")  # the window manager has taken over the window by then
+        desk.xdotool("search", "--name", "Halation$", "windowmove", 0, 0, "windowsize", 800, 600)
+        desk.until(lambda facts: facts["places"]["Scopes"][2] <= 800)
+        left, top, *_ = map(round, desk.find_still_place("Scopes"))  # its tab, dragged out, becomes a window
+        desk.xdotool("search", "--name", "Halation$", "mousemove", "--window", "%1", left + 36, top + 12)
+        desk.xdotool("mousedown", 1, *(50 * ("mousemove_relative", 10, 0, "sleep", 0.02)))
+        desk.until(lambda facts: facts["windows"] == 2 and facts["places"]["Scopes"][0] > 800)
+        desk.xdotool("mouseup", 1)
         for width, height in ((1000, 600), (1250, 720), (900, 560)):
             before = desk.facts["size"]
             desk.xdotool("search", "--name", "Halation$", "windowsize", width, height)

@@ -18,7 +18,7 @@ import numpy as np
 
 Array = np.ndarray
 Box = tuple[int, int, int, int]
-"""Left, top, right and bottom in pixels of the window, row 0 on top."""
+"""Left, top, right and bottom in pixels of the screen, row 0 on top: the window does not begin at 0,0."""
 
 VERTEX = 5
 """Numbers of a vertex: x, y, u, v, color."""
@@ -146,9 +146,8 @@ def surround_rows(rows: Array) -> list[Box]:
     return [(int(left), int(top), int(right), int(bottom))]
 
 
-def merge_boxes(boxes: Sequence[Box], size: tuple[int, int]) -> list[Box]:
+def merge_boxes(boxes: Sequence[Box], window: Box) -> list[Box]:
     """Few rectangles of the window that cover all boxes, and overlap nowhere: merged where that costs less to draw."""
-    window = (0, 0, *size)
     merged: list[Box] = []
     for box in boxes:
         clipped = _intersect(box, window)

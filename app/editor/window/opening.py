@@ -21,6 +21,7 @@ def open_window(path: Path | None, bindings: Mapping[str, str], sandbox: Sandbox
     state = state_folder()
     window = Window(path, bindings, sandbox, version=best_version(), state=state)
     keep_layout(window.params, state)
+    window.params.imgui_window_params.enable_viewports = os.environ.get("HALATION_WINDOW") != "none"
     with _close_on_signals(window) as signals:
         run(window)
     if signal.SIGINT in signals:

@@ -5,7 +5,8 @@ changed rectangle, clipped to that. The library then finds a picture without siz
 
 It needs a window whose pixels stay when they are shown: a driver may swap two buffers instead of copying one. So the
 first frames are drawn whole, each with a pixel of its own color in a corner, which must still be there afterwards.
-While the test engine runs, the library draws: the thread of a test would wait for ours, which ends the frame.
+The library draws the windows of panels that were torn off. While the test engine runs, it draws everything: the thread
+of a test would wait for ours, which ends the frame.
 """
 
 from __future__ import annotations
@@ -93,9 +94,9 @@ class WindowPainter:
     def __init__(self, device: Device, is_able: bool) -> None:
         self._device = device
         self._lists: tuple[_DrawnList, ...] = ()
-        self._size: tuple[int, int] = (0, 0)
+        self._window: Box = (0, 0, 0, 0)
         self._whole_frames = 0
-        self._trial = 0
+        self._trial = self._lost_marks = 0
         self._is_able = is_able and device.target.software
         self.drawn_boxes: tuple[Box, ...] = ()
         """What was drawn in the last frame."""
@@ -107,26 +108,26 @@ class WindowPainter:
             self._device.clear_window((0, 0, *measure_window()))
             return
         imgui.render()
-        picture, window_size = imgui.get_draw_data(), measure_window()
-        scale, corner = picture.framebuffer_scale, picture.display_pos
-        is_plain = (corner.x, corner.y, scale.x, scale.y) == (0.0, 0.0, 1.0, 1.0)
-        if not is_plain or not self._has_known_memory(picture):
+        picture = imgui.get_draw_data()
+        scale, corner, (width, height) = picture.framebuffer_scale, picture.display_pos, measure_window()
+        if (scale.x, scale.y) != (1.0, 1.0) or not self._has_known_memory(picture):
             self.redraw_all()
-            self._device.clear_window((0, 0, *window_size))
+            self._device.clear_window((0, 0, width, height))
             return
-        self._paint_changes(picture, window_size, written)
+        x, y = round(corner.x), round(corner.y)
+        self._paint_changes(picture, (x, y, x + width, y + height), written)
         picture.display_size = ImVec2(0.0, 0.0)  # nothing is left to draw for the library
 
-    def _paint_changes(self, picture: imgui.ImDrawData, size: tuple[int, int], written: frozenset[int]) -> None:
+    def _paint_changes(self, picture: imgui.ImDrawData, window: Box, written: frozenset[int]) -> None:
         before, self._lists = self._lists, tuple(map(_copy_list, picture.cmd_lists))
-        boxes: list[Box] = [(0, 0, *size)]
-        if size != self._size:
-            self._size = size
+        boxes = [window]
+        if window != self._window:
+            self._window = window
             self.redraw_all(RESIZED)
         if self._whole_frames > 0:
             self._whole_frames -= 1
         elif self._trial > TRIALS and not _is_reordered(before, self._lists):
-            boxes = merge_boxes(_find_changes(before, self._lists, written), size)
+            boxes = merge_boxes(_find_changes(before, self._lists, written), window)
         for box in boxes:
             self._paint_box(picture, box)
         self.drawn_boxes = tuple(boxes)
@@ -142,10 +143,13 @@ class WindowPainter:
 
     def check_mark(self) -> None:
         """Leave all frames to the library if the pixel of a trial is gone; to be called after a frame is shown."""
-        if self._is_able and self._trial <= TRIALS:
-            if self._trial < TRIALS:
-                self._is_able = self._device.read_window_pixel()[0] == round(255 * _make_mark(self._trial)[0])
+        if not self._is_able or self._trial > TRIALS:
+            return
+        if self._trial == TRIALS or self._device.read_window_pixel()[0] == round(255 * _make_mark(self._trial)[0]):
             self._trial += 1
+        else:  # perhaps only because the size of the window has changed
+            self._lost_marks += 1
+            self._is_able = self._lost_marks < TRIALS
 
     def _paint_box(self, picture: imgui.ImDrawData, box: Box) -> None:
         """Draw what lies in a box. Commands that are clipped to nothing cost nothing."""
@@ -153,7 +157,7 @@ class WindowPainter:
         originals = [table.copy() for table in tables]
         if not self._skip_covered(tables, box):
             left, top, right, bottom = box
-            self._device.clear_window((left, self._size[1] - bottom, right - left, bottom - top))
+            self._device.clear_window((left - self._window[0], self._window[3] - bottom, right - left, bottom - top))
         for table in tables:
             clips = table["clip"]
             np.maximum(clips[:, :2], box[:2], out=clips[:, :2])

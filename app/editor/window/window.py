@@ -378,6 +378,7 @@ class Window:
     def _screenshot(self) -> None:
         """Save the window as it was shown last."""
         pixels = self.device.read_window(measure_window())
+        self._painter.redraw_all()
         self.editor.dialogs.browse = Browse(
             "Save a screenshot",
             "export",

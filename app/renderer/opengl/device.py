@@ -215,10 +215,12 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
         self.context.screen.clear(*color, viewport=region)
 
     def read_window_pixel(self) -> tuple[int, int, int]:
+        self._update_window()
         red, green, blue = self.context.screen.read((0, 0, 1, 1), components=3, alignment=1)
         return red, green, blue
 
     def read_window(self, size: tuple[int, int]) -> np.ndarray:
+        self._update_window()
         width, height = size
         pixels = np.frombuffer(self.context.screen.read((0, 0, *size), components=3, alignment=1), np.uint8)
         return pixels.reshape(height, width, 3)[::-1]
@@ -229,6 +231,10 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
         self.context.release()
 
     # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _update_window(self) -> None:
+        """Let the driver notice a new size of the window. Mesa 22 ends the process in a read that is the first to."""
+        self.context.screen.clear(viewport=(1, 0, 1, 1))
 
     @cached_property
     def _idle(self) -> moderngl.Framebuffer:

@@ -75,7 +75,7 @@ def test_no_pixel_outside_of_the_boxes_differs(seed: int) -> None:
     for left, top, right, bottom in boxes:
         outside[max(top, 0) : bottom, max(left, 0) : right] = False
     assert not (draw(before, clips) != draw(after, new_clips))[outside].any()
-    merged = merge_boxes(boxes, SIZE)
+    merged = merge_boxes(boxes, (0, 0, *SIZE))
     covered = np.zeros((SIZE[1], SIZE[0]), int)
     for left, top, right, bottom in merged:
         covered[top:bottom, left:right] += 1
@@ -101,9 +101,9 @@ def test_a_picture_has_the_box_of_its_texture() -> None:
 
 def test_far_boxes_stay_apart() -> None:
     near, far = (10, 10, 60, 60), (1500, 900, 1560, 960)
-    assert merge_boxes([near, far], (1920, 1080)) == [near, far]
-    assert merge_boxes([near, (40, 40, 80, 80)], (1920, 1080)) == [(10, 10, 80, 80)]
-    assert merge_boxes([(-5, -5, 0, 0), (1900, 1000, 2000, 1200)], (1920, 1080)) == [(1900, 1000, 1920, 1080)]
+    assert merge_boxes([near, far], (0, 0, 1920, 1080)) == [near, far]
+    assert merge_boxes([near, (40, 40, 80, 80)], (0, 0, 1920, 1080)) == [(10, 10, 80, 80)]
+    assert merge_boxes([(-5, -5, 0, 0), (1900, 1000, 2000, 1200)], (0, 0, 1920, 1080)) == [(1900, 1000, 1920, 1080)]
 
 
 @pytest.mark.parametrize("seed", range(40))
