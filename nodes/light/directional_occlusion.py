@@ -15,6 +15,7 @@ from .._declare import (
     Slider,
     Vector,
 )
+from ._coverage import COVERAGE_REACH
 from ._denoise import LIGHT, SPREAD, denoise, prefilter
 from ._environment import SKY, irradiance, shrunk
 from ._occlusion import DATA, FACTORS, SAMPLES, denoise_and_enlarge, measure_size
@@ -24,6 +25,9 @@ _STRIDES = (3, 6)
 
 _COARSE = (24, 12)
 """What is hidden of the surroundings is seen this coarsely."""
+
+_HERE = dict.fromkeys(("depth", "albedo", "normal", "gathered", "lamps"), COVERAGE_REACH) | {"coverage": 0}
+"""What a pixel at an edge is lit by: its neighbors' light; the sky may be read anywhere."""
 
 
 class DirectionalOcclusion(Filter):
@@ -102,6 +106,8 @@ class DirectionalOcclusion(Filter):
             gathered=gathered,
             lamps=lamps,
             sky=irradiance(draw, "directional_occlusion", sky),
+            coverage=self._share_pixels(draw),
+            overlap=_HERE,
             rays=rays,
             intensity=self.intensity,
             bounce=self.bounce,
@@ -109,6 +115,17 @@ class DirectionalOcclusion(Filter):
             up=self.up,
         )
         return {"out": draw.point("directional_occlusion", self.image, light=light), "light": light}
+
+    def _share_pixels(self, draw: Draw) -> Drawn:
+        """The surfaces of pixels at edges, by the normals that a renderer has filtered over them."""
+        near = draw.point("directional_occlusion_near", self.depth, result=Field())
+        return draw(
+            "directional_occlusion_coverage",
+            self.normal,
+            near=near,
+            overlap=COVERAGE_REACH,
+            result=Vector(width=3),
+        )
 
     def _gather(
         self, draw: Draw, normal: Drawn, sky: Drawn, rows: tuple[float, ...], rays: tuple[float, ...]

@@ -1,6 +1,7 @@
 #include "light/ambient_occlusion.glsl"
 #include "light/image_based_light.glsl"
 #include "lib/alpha.glsl"
+#include "lib/coverage.glsl"
 #include "lib/denoise.glsl"
 #include "lib/environment.glsl"
 #include "lib/finite.glsl"
@@ -149,13 +150,44 @@ vec4 directional_occlusion_enlarge(const vec4 rays[3], int factor) {
     return ambient_occlusion_between(rays, factor, AMBIENT_OCCLUSION_OPEN);
 }
 
+float directional_occlusion_near(float depth) { return nearness(depth); }
+
+// The surfaces of a pixel, or one where it is not sure that there are two.
+vec3 directional_occlusion_coverage() {
+    vec3 stored = coverage_found();
+    return coverage_is_sure(coverage_of(stored)) ? stored : vec3(1.0, 0.0, 0.0);
+}
+
+// The light that a white surface gets in a pixel that is wholly in it.
+vec3 directional_occlusion_white(
+    const vec4 rays[3], ivec2 at, float intensity, float bounce, float rotation, int up
+) {
+    if (!is_surface(depth_at(at))) return vec3(0.0);
+    Seen here = ambient_occlusion_seen(rays, at);
+    vec3 light = intensity * directional_occlusion_from(here.normal, up, rotation) + gathered_at(at).rgb;
+    return max(light + bounce * lamps_at(at).rgb, 0.0);
+}
+
+vec3 directional_occlusion_color(ivec2 at) { return clamp(straight(albedo_at(at)).rgb, 0.0, 1.0); }
+
+// The light on the surfaces of a pixel, each as it is beside an edge, by coverage.
 vec4 directional_occlusion_light(const vec4 rays[3], float intensity, float bounce, float rotation, int up) {
-    float depth = depth_at(pixel);
-    if (!is_surface(depth)) return vec4(0.0, 0.0, 0.0, 1.0);
-    Seen here = ambient_occlusion_seen(rays, pixel);
-    vec3 light = intensity * directional_occlusion_from(here.normal, up, rotation) + gathered_at(pixel).rgb;
-    light = max(light + bounce * lamps_at(pixel).rgb, 0.0);
-    return finite(vec4(light * clamp(straight(albedo_at(pixel)).rgb, 0.0, 1.0), 1.0));
+    Coverage shares = coverage_of(coverage_at(pixel));
+    vec3 color = directional_occlusion_color(pixel), sum = vec3(0.0);
+    bool mixed = coverage_is_mixed(shares);
+    for (int k = 0; k < (mixed ? 2 : 1); ++k) {
+        ivec2 at = k == 0 ? shares.front : shares.back;
+        vec3 light = directional_occlusion_white(rays, at, intensity, bounce, rotation, up), part = color;
+        if (mixed) {
+            vec4 front = vec4(directional_occlusion_color(shares.front), 0.0);
+            vec4 back = vec4(directional_occlusion_color(shares.back), 0.0);
+            if (!is_surface(depth_at(shares.back))) back = vec4(0.0);
+            vec3 ours = coverage_part(vec4(color, 0.0), front, back, shares.front_share).rgb;
+            part = k == 0 ? ours : color - ours;
+        }
+        sum += light * part;
+    }
+    return finite(vec4(sum, 1.0));
 }
 
 vec4 directional_occlusion(vec4 image, vec4 light) {

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from halation.nodes import Light, LightKind, look_at, number_lights
 from halation.nodes.light.deferred_lighting import DeferredLighting
+from halation.nodes.light.directional_occlusion import DirectionalOcclusion
 from halation.nodes.light.image_based_light import ImageBasedLight
 from halation.nodes.light.screen_reflections import ScreenReflections
 from raycast import cast_rays
@@ -89,6 +90,15 @@ def test_surroundings_light_each_surface_of_a_pixel(run, scene, deep):
     inputs = {name: scene[name] for name in names} | {"camera": CAMERA}
     inside, edges, largest = errors(scene, run(ImageBasedLight(specular=0.0), inputs, output="diffuse"), "sky")
     assert inside < 1e-3 and edges < 6e-3 and largest < 0.03
+
+
+def test_surroundings_without_shade_light_each_surface_of_a_pixel(run, scene):
+    """Where nothing is near enough to hide the sky, directional occlusion lights as the sky does."""
+    inputs = {name: scene[name] for name in ("albedo", "normal", "depth")} | {"camera": CAMERA}
+    inputs |= {"image": np.zeros((HEIGHT, WIDTH, 4)), "environment": np.ones((16, 32, 4))}
+    light = run(DirectionalOcclusion(radius=1e-4, bounce=0.0), inputs, output="light")
+    inside, edges, largest = errors(scene, light, "sky")
+    assert inside < 5e-3 and edges < 1.3 * max(inside, 5e-3) and largest < 0.03
 
 
 def test_reflections_are_divided_by_coverage(run, scene):
