@@ -79,11 +79,10 @@ def test_a_damaged_file_leaves_nothing(tmp_path):
 
 
 def test_a_folder_that_cannot_be_made_is_named(tmp_path):
-    (tmp_path / "home").write_text("a file")
-    outcome = call(write_program(tmp_path, "1"), tmp_path / "home")
-    assert (
-        outcome.returncode == 1 and f"{tmp_path}/home/halation/application: the folder cannot be made" in outcome.stderr
-    )
+    home = tmp_path / "home"
+    home.write_text("a file")
+    outcome = call(write_program(tmp_path, "1"), home)
+    assert outcome.returncode == 1 and f"{home}/halation/application: the folder cannot be made" in outcome.stderr
 
 
 def test_an_archive_of_the_application_has_the_same_bytes(tmp_path):
