@@ -13,7 +13,7 @@ from ..resources.sandbox import Sandbox
 from ..version import VERSION
 from .options import AsJson, expand_preset, read_standard_input
 from .outcome import print_json, print_note, write_count
-from .plugins import list_refused_plugins, print_refused_plugins
+from .plugins import describe_refused_plugins, print_refused_plugins
 
 if TYPE_CHECKING:
     from ..graph.rules import Rule
@@ -67,8 +67,7 @@ def check(
     if sarif:
         _write_sarif(reports, RULES, sarif, sandbox=sandbox)
     if as_json:
-        refused = list_refused_plugins()
-        plugin_facts = {"refused_plugins": refused} if refused else {}
+        plugin_facts = describe_refused_plugins()
         print_json({"graphs": [_report_facts(report, strict) for report in reports], **plugin_facts})
     else:
         print_refused_plugins()

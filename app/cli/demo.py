@@ -68,11 +68,15 @@ def demo(
 
 def _list_presets(as_json: bool) -> int:
     from ..custom_nodes.plugins import name_presets
+    from .plugins import describe_refused_plugins, print_refused_plugins
 
     if as_json:
-        print_json({"presets": {name: str(path) for name, path in name_presets().items()}})
+        print_json(
+            {"presets": {name: str(path) for name, path in name_presets().items()}, **describe_refused_plugins()}
+        )
     else:
         print(*name_presets(), sep="\n")
+        print_refused_plugins()
     return 0
 
 

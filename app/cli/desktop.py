@@ -22,10 +22,11 @@ def desktop(
     ] = None,
     as_json: AsJson = False,
 ) -> int:
-    """Add Halation to the desktop's menu, and let a double-click open graphs.
+    """Add Halation to the desktop's menu.
 
-    It writes an entry with an icon, the type of graphs, how thumbnails of graphs and EXR files are made, and manual
-    pages for man. Programs of the desktop then offer Halation for pictures too. It prints the files that it writes.
+    A double-click then opens graphs, and programs of the desktop offer Halation for pictures too. It writes an entry
+    with an icon, the type of graphs, how thumbnails of graphs and EXR files are made, and manual pages for man. It
+    prints the files that it writes.
     """
     from ..desktop import desktop_entries, find_program, install
     from ..desktop import remove as remove_files

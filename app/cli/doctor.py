@@ -43,10 +43,11 @@ class MachineCheck(Struct, frozen=True):
 
 
 def doctor(as_json: AsJson = False) -> int:
-    """Check what Halation needs on this machine, and say what to do where something is missing.
+    """Check what Halation needs on this machine.
 
-    It looks at packages, OpenGL, memory, disk, folders, color management and plug-ins. Paste its output into reports of
-    bugs: paths in your home folder are shortened. The exit code is 1 if something does not work.
+    It looks at packages, OpenGL, memory, disk, folders, color management and plug-ins, and says what to do where
+    something is missing. Paste its output into reports of bugs: paths in your home folder are shortened. The exit code
+    is 1 if something does not work.
     """
     checks = list(examine_machine())
     if as_json:
@@ -173,11 +174,13 @@ def _examine_color() -> MachineCheck:
 def _examine_plugins() -> Iterator[MachineCheck]:
     from halation.nodes import plugins
 
-    for refused in list_refused_plugins():
+    refused_plugins = list_refused_plugins()
+    for refused in refused_plugins:
         sentence = f"{refused['package']} {refused['version']} cannot be loaded: {refused['fault']}"
         yield MachineCheck("plug-ins", "fault", sentence)
     loaded = [f"{plugin.package} {plugin.version}" for plugin in plugins() if not plugin.fault]
-    yield MachineCheck("plug-ins", "ok", ", ".join(loaded) or "none")
+    if loaded or not refused_plugins:
+        yield MachineCheck("plug-ins", "ok", ", ".join(loaded) or "none")
 
 
 def _shorten(path: Path) -> str:

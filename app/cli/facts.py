@@ -72,6 +72,7 @@ def node_facts(node: type[Node]) -> dict[str, Any]:
         "version": node.version,
         **({"package": node.required_package} if node.required_package else {}),
         "doc": node_doc(node),
+        "aliases": list(node.aliases),
         "inputs": {name: _socket_facts(socket) for name, socket in node.inputs.items()},
         "outputs": {
             name: _socket_facts(output.socket) | ({"follows": output.follows} if output.follows else {})

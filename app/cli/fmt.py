@@ -10,7 +10,7 @@ import typer
 
 from ..resources.sandbox import Sandbox
 from .options import AsJson, read_standard_input
-from .outcome import print_json, print_note
+from .outcome import print_json, print_note, write_count
 
 
 def fmt(
@@ -59,8 +59,9 @@ def fmt(
         print_json({"changed": [str(path) for path in changed], "checked": len(formatted), "written": not check})
     else:
         for path in changed:
-            print_note(f"{path}: {'would be formatted' if check else 'formatted'}")
-        print_note(f"{len(formatted) - len(changed)} of {len(formatted)} were formatted already")
+            print_note(f"{path}: {'would be rewritten' if check else 'rewritten'}")
+        outcome = f"{len(changed)} {'to rewrite' if check else 'rewritten'}" if changed else "nothing to rewrite"
+        print_note(f"{write_count(len(formatted), 'file')}: {outcome}")
     return 1 if check and changed else 0
 
 

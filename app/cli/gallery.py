@@ -14,6 +14,7 @@ from ..resources.sandbox import UNRESTRICTED, read_process_sandbox
 from .batch import find_middle_frame, open_batch
 from .options import AsJson
 from .outcome import print_json
+from .plugins import describe_refused_plugins, print_refused_plugins
 
 if TYPE_CHECKING:
     from halation.nodes import Kind, Node
@@ -73,7 +74,9 @@ def gallery(
             batch.say(f"{name:<24} {len(sheet.names):>3} pictures  {seconds:5.2f} s  {file}")
             rows.append({"sheet": str(file), "pictures": list(sheet.names), "seconds": round(seconds, 3)})
     if as_json:
-        print_json({"device": batch.device, "sheets": rows})
+        print_json({"device": batch.device, "sheets": rows, **describe_refused_plugins()})
+    else:
+        print_refused_plugins()
     return 0
 
 

@@ -28,7 +28,10 @@ def jobs(
     ] = "",
     as_json: AsJson = False,
 ) -> int:
-    """List, follow or cancel the jobs of a cluster that were sent with render --detach."""
+    """List, follow or cancel the jobs of a cluster.
+
+    These are the jobs that were sent with render --detach.
+    """
     from ..cluster.connection import open_client
     from ..cluster.detached import JobBoard
 

@@ -70,6 +70,8 @@ def write_node_section(node: type[Node]) -> Iterator[str]:
         yield _escape_paragraph(f"From the plug-in {node.required_package.replace('==', ' ')}.")
     for paragraph in node_doc(node).split("\n\n"):
         yield _escape_paragraph(paragraph)
+    if node.aliases:
+        yield _escape_paragraph(f"Also known as {', '.join(node.aliases)}.")
     outputs = {name: output.socket for name, output in node.outputs.items()}
     for title, sockets in (("input", node.inputs), ("output", outputs)):
         noted = {name: socket for name, socket in sockets.items() if socket_note(socket) and not socket.folded}

@@ -36,15 +36,27 @@ def check_nodes(name: str, as_json: bool, sandbox: Sandbox) -> int:
     else:
         for subject, sentences in faults.items():
             print(*(f"{subject}: {sentence}" for sentence in sentences or ("ok",)), sep="\n")
-        count = sum(map(bool, faults.values()))
-        print_note(f"{write_count(len(classes), 'node')}: {count or 'nothing'} to mend")
+        _print_summary(classes, sum(map(bool, faults.values())), sum(bool(plugin.fault) for plugin in chosen))
     return 1 if any(faults.values()) else 0
+
+
+def _print_summary(classes: Mapping[str, type[Node]], faulty_count: int, refused_count: int) -> None:
+    """Print how many nodes were checked and how many subjects have faults, and what is unusual about masks."""
+    for id, node in classes.items():
+        if node.own_mask_names:
+            names = " and ".join(f"'{name}'" for name in node.own_mask_names)
+            print_note(f"{id}: it declares {names} itself, so that Halation adds no mask, mix and invert_mask")
+    parts = [f"{write_count(refused_count, 'plug-in')} cannot be loaded"] if refused_count else []
+    if classes or not refused_count:
+        parts.append(f"{write_count(len(classes), 'node')}: {faulty_count - refused_count or 'nothing'} to mend")
+    print_note("; ".join(parts))
 
 
 def _choose_nodes(name: str, plugins: tuple[Plugin, ...]) -> tuple[Mapping[str, type[Node]], list[Plugin]]:
     """The nodes to check by id, and the plug-ins that are checked as a whole. Raises UsageError."""
     from halation.nodes import catalogue
 
+    from ..custom_nodes.plugins import find_refused_plugin
     from ..graph import did_you_mean
 
     if name in catalogue():
@@ -52,9 +64,16 @@ def _choose_nodes(name: str, plugins: tuple[Plugin, ...]) -> tuple[Mapping[str, 
     chosen = [plugin for plugin in plugins if not name or name in (plugin.package, plugin.namespace)]
     if not chosen and not name:
         raise UsageError("no plug-in is installed: name a node, such as halation nodes bloom --check")
+    if refused_plugin := find_refused_plugin(name):
+        fault = f"the plug-in {refused_plugin} cannot be loaded: {refused_plugin.fault}"
+        raise UsageError(f"there is no node '{name}': {fault}")
     if not chosen:
-        names = [plugin.package for plugin in plugins]
-        raise UsageError(f"there is no node and no plug-in '{name}'{did_you_mean(name, [*names, *catalogue()])}")
+        packages = [name for plugin in plugins for name in (plugin.package, plugin.namespace)]
+        # Only packages have a hyphen, and no node is meant by the name of one that is not installed.
+        hint = did_you_mean(name, packages if "-" in name else [*packages, *catalogue()])
+        rest = f"the plug-ins are {', '.join(map(str, plugins))}" if plugins else "no plug-in is installed"
+        way_out = hint or f": name a node, or an installed plug-in by its package or import name; {rest}"
+        raise UsageError(f"there is no node and no installed plug-in '{name}'{way_out}")
     return {id: node for plugin in chosen for id, node in plugin.nodes.items()}, chosen
 
 

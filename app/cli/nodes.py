@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any
+import re
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -19,15 +21,19 @@ from .facts import (
     soft_range,
 )
 from .options import AsJson
-from .outcome import print_json
-from .plugins import list_refused_plugins, print_refused_plugins
+from .outcome import print_json, print_note
+from .plugins import describe_refused_plugins, print_refused_plugins
 
 if TYPE_CHECKING:
     from halation.nodes import Node, Value
 
 
 _Id = Annotated[
-    str, typer.Argument(help="A node, or a code file (FILE.fs, FILE.glsl); without it all nodes are listed.")
+    str,
+    typer.Argument(
+        help="A node, a menu or another name of nodes, or a code file (FILE.fs, FILE.glsl); without it all nodes are "
+        "listed."
+    ),
 ]
 _Check = Annotated[
     bool,
@@ -50,26 +56,24 @@ def nodes(
 ) -> int:
     """List all nodes, or describe one.
 
-    The description has its sockets, values, ranges and units, and the passes that it compiles to.
+    The description has its sockets, values, ranges and units, and the passes that it compiles to. The name of a menu,
+    or one that other programs give such a node, lists the nodes that it fits.
     """
     if check:
         from .node_check import check_nodes
 
         return check_nodes(id, as_json, sandbox)
-    from halation.nodes import catalogue, plugins
+    from halation.nodes import catalogue
 
     from ..errors import UsageError
-    from ..graph import did_you_mean
 
     classes = catalogue()
     if id.endswith((".fs", ".glsl")):
         classes = {id: _load_code(id, sandbox=sandbox)}
+    word = ""
     if id and id not in classes:
-        for plugin in plugins():
-            if plugin.fault and "." in id and plugin.namespace == id.partition(".")[0]:
-                raise UsageError(f"there is no node '{id}': the plug-in {plugin} cannot be loaded: {plugin.fault}")
-        raise UsageError(f"there is no node '{id}'{did_you_mean(id, classes)}")
-    if markdown and (id or as_json):
+        classes, word, id = _find_nodes(id, classes), id, ""
+    if markdown and (id or word or as_json):
         raise UsageError("--markdown prints the whole catalogue: leave out the node and --json")
     if markdown:
         from .manual import catalogue_page
@@ -79,20 +83,48 @@ def nodes(
         print_json(
             node_facts(classes[id])
             if id
-            else {"nodes": [node_facts(node) for node in classes.values()], **_plugin_facts()}
+            else {"nodes": [node_facts(node) for node in classes.values()], **describe_refused_plugins()}
         )
     elif id:
         _print_node(classes[id])
+        menu = [node.id for node in classes.values() if node.category == id]
+        if menu:
+            print_note(f"the menu {id} has {', '.join(menu)}")
     else:
         _list_nodes(list(classes.values()))
         print_refused_plugins()
     return 0
 
 
-def _plugin_facts() -> dict[str, Any]:
-    """The plug-ins that cannot be loaded, as an entry for JSON; empty if there are none."""
-    refused = list_refused_plugins()
-    return {"refused_plugins": refused} if refused else {}
+def _find_nodes(word: str, classes: Mapping[str, type[Node]]) -> dict[str, type[Node]]:
+    """The nodes of the menu of this name, and those that have it, or hold it as whole words, in a name of theirs.
+
+    Raises UsageError if there are none.
+    """
+    from ..custom_nodes.plugins import find_refused_plugin
+    from ..errors import UsageError
+    from ..graph import did_you_mean
+
+    words = f" {_separate_words(word)} "
+    matches = {
+        id: node
+        for id, node in classes.items()
+        if words == f" {node.category} "
+        or any(words in f" {_separate_words(name)} " for name in (node.title, *node.aliases))
+    }
+    if matches and words.strip():
+        return matches
+    if plugin := find_refused_plugin(word):
+        raise UsageError(f"there is no node '{word}': the plug-in {plugin} cannot be loaded: {plugin.fault}")
+    menus = {node.category for node in classes.values()}
+    # Only packages have a hyphen, and no node is meant by the name of one that is not installed.
+    hint = "" if "-" in word else did_you_mean(word, [*classes, *menus])
+    raise UsageError(f"there is no node, menu or installed plug-in '{word}'{hint}")
+
+
+def _separate_words(name: str) -> str:
+    """A name in lower case with one blank between its words."""
+    return " ".join(re.findall(r"[^\W_]+", name.lower()))
 
 
 def _load_code(file: str, sandbox: Sandbox) -> type[Node]:
@@ -121,6 +153,8 @@ def _list_nodes(classes: list[type[Node]]) -> None:
 def _print_node(node: type[Node]) -> None:
     source = f", from {node.required_package.replace('==', ' ')}" if node.required_package else ""
     print(f"{node.id}  ({node.category}, version {node.version}{source})\n\n{node_doc(node)}\n")
+    if node.aliases:
+        print(f"also known as {', '.join(node.aliases)}\n")
     inputs = [(name, socket, socket_type(socket)) for name, socket in node.inputs.items()]
     outputs = [(name, output.socket, output_type(output)) for name, output in node.outputs.items()]
     for title, sockets in (("inputs", inputs), ("outputs", outputs)):

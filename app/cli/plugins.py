@@ -16,6 +16,12 @@ def list_refused_plugins() -> list[dict[str, str]]:
     ]
 
 
+def describe_refused_plugins() -> dict[str, list[dict[str, str]]]:
+    """The plug-ins that cannot be loaded, as an entry for JSON; empty if there are none."""
+    refused_plugins = list_refused_plugins()
+    return {"refused_plugins": refused_plugins} if refused_plugins else {}
+
+
 def print_refused_plugins() -> None:
     """Print to standard error which plug-ins cannot be loaded, and why."""
     for plugin in list_refused_plugins():

@@ -41,10 +41,11 @@ def serve(
     *,
     sandbox: Sandbox,
 ) -> int:
-    """Answer requests in lines of JSON until the input ends or Ctrl-C.
+    """Answer requests in lines of JSON.
 
-    A request is {"id": 1, "do": "render", "graph": "look.json", "set": {"blur.sigma": 4}}; it may also be to explain,
-    check or make a thumbnail. The device and its programs stay from request to request.
+    It ends with the input, or on Ctrl-C. A request is {"id": 1, "do": "render", "graph": "look.json", "set":
+    {"blur.sigma": 4}}; it may also be to explain, check or make a thumbnail. The device and its programs stay from
+    request to request.
     """
     from ..serving.service import ServiceLimits
 

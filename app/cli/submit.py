@@ -72,7 +72,10 @@ def submit(
     *,
     sandbox: Sandbox,
 ) -> int:
-    """Write files for render farms, which share the frames of a graph among machines."""
+    """Write job files for render farms.
+
+    The machines of a farm share the frames of a graph.
+    """
     from .farm_files import FarmJob
 
     if str(graph) == "-":

@@ -6,8 +6,9 @@ import os
 from pathlib import Path
 
 from halation import presets
-from halation.nodes import plugins
+from halation.nodes import Plugin, plugins
 
+from ..errors import DocumentError
 from ..resources.user_folders import list_preset_folders
 
 
@@ -42,9 +43,25 @@ def find_preset(name: str) -> Path | None:
     return next((path for path in presets.paths() if path.stem == name), None) or name_library().get(name)
 
 
+def find_refused_plugin(name: str) -> Plugin | None:
+    """The plug-in that cannot be loaded and would bring what a name with a namespace stands for: a node or a preset."""
+    if "." not in name:
+        return None
+    namespace = name.partition(".")[0]
+    return next((plugin for plugin in plugins() if plugin.fault and plugin.namespace == namespace), None)
+
+
 def find_graph_or_preset(name: str | Path) -> Path:
-    """The path that the user named, or the file of a preset if there is no such path and a preset has this name."""
+    """The path that the user named, or the file of a preset if there is no such path and a preset has this name.
+
+    Raises DocumentError for the name of a preset whose plug-in cannot be loaded.
+    """
     path = Path(name)
-    if path.name == str(name) and not os.path.lexists(path):
-        return find_preset(path.name) or path
+    if path.name != str(name) or os.path.lexists(path):
+        return path
+    if preset := find_preset(path.name):
+        return preset
+    if plugin := find_refused_plugin(path.name):
+        fault = f"there is no such file, and the plug-in {plugin} cannot be loaded: {plugin.fault}"
+        raise DocumentError(str(name), "", fault, rule="unreadable-graph")
     return path

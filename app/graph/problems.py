@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import builtins
 import math
-import re
 from collections.abc import Collection, Iterator, Mapping
 from typing import Any, ClassVar
 
-from halation.nodes import ItemSet, Node, catalogue, plugins
+from halation.nodes import ItemSet, Node, catalogue
 from msgspec.structs import replace
 
 from ..errors import GraphError
@@ -20,12 +19,10 @@ from .model import MAX_GROUP_DEPTH, Input, Port, Unknown
 from .named_items import find_item_faults
 from .names import INPUTS, OUTPUTS, did_you_mean, limit_suggestions, name_fault, pick
 from .rules import Rule, Severity
+from .unknown_nodes import explain_unknown
 from .unmerged import CONFLICTS, find_unmerged
 from .values import coerce_numbers, sequence_fault, value_fault
 from .walk import describe_loop, find_loops, has_loops
-
-_REQUIREMENT = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*==[A-Za-z0-9][A-Za-z0-9.+!_-]*")
-"""A package and its version, as pip takes them. Anything else in a file is not repeated as a command to type."""
 
 CONTROLS = "controls"
 """The `node` of a problem with a control."""
@@ -103,7 +100,8 @@ def _inside(graph: Graph, node_types: Mapping[str, type[Node]], depth: int) -> I
         if fault := name_fault(id, "node"):
             yield Problem(id, "", fault, rules.BAD_NAME)
         if isinstance(item, Unknown):
-            yield _unknown(id, item, node_types)
+            sentence, rule = explain_unknown(id, item, node_types)
+            yield Problem(id, "", sentence, rule)
             continue
         if builtins.id(item) not in sound_nodes:
             value_problems = [*_values(id, item)]
@@ -124,42 +122,6 @@ def _inside(graph: Graph, node_types: Mapping[str, type[Node]], depth: int) -> I
 def _sort_feeding(graph: Graph) -> dict[str, list[str]]:
     """The nodes that feed each node, in an order that does not change, so that the same loop is always named."""
     return {id: sorted(graph.feeding[id]) for id in sorted(graph.nodes)}
-
-
-def _unknown(id: str, item: Unknown, node_types: Mapping[str, type[Node]]) -> Problem:
-    if item.fault:
-        return Problem(id, "", f"node '{id}': {item.fault}", rules.BROKEN_CODE)
-    if fault := _plugin_fault(item):
-        return Problem(id, "", f"node '{id}' has the type '{item.type}' {fault}", rules.MISSING_PLUGIN)
-    hint = did_you_mean(item.type, node_types)
-    return Problem(id, "", f"node '{id}' has the unknown type '{item.type}'{hint}", rules.UNKNOWN_TYPE)
-
-
-def _plugin_fault(item: Unknown) -> str:
-    """Why the plug-in that a node comes from does not give it, and what to install; "" for a node of none."""
-    package = item.raw.get("package")
-    if package is None and "." not in item.type:
-        return ""
-    requirement = package if isinstance(package, str) and _REQUIREMENT.fullmatch(package) else ""
-    namespace = item.type.partition(".")[0]
-    name = _normalize(requirement.partition("==")[0])
-    installed = [
-        plugin
-        for plugin in (plugins() if "." in item.type else ())
-        if plugin.namespace == namespace or _normalize(plugin.package) == name
-    ]
-    for plugin in installed:
-        if plugin.fault:
-            return f"of the plug-in {plugin}, which cannot be loaded: {plugin.fault}"
-    if not requirement:
-        return ""
-    lack = f"the installed {installed[0]} does not have it" if installed else "which is not installed"
-    return f"of the plug-in {requirement.replace('==', ' ')}, {lack}: pip install {requirement}"
-
-
-def _normalize(package: str) -> str:
-    """The name of a package as indexes compare it (PEP 503)."""
-    return re.sub(r"[-_.]+", "-", package).lower()
 
 
 def _animations(graph: Graph) -> Iterator[Problem]:

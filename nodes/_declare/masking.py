@@ -33,18 +33,23 @@ def list_mask_values() -> dict[str, tuple[Any, float | bool]]:
     return {MIX: (Annotated[float, mix, Folded()], 1.0), INVERT_MASK: (Annotated[bool, invert, Folded()], False)}
 
 
-def is_maskable(cls: type, inputs: Mapping[str, Socket], outputs: Mapping[str, OutputSocket], base: type) -> bool:
-    """True for a class whose first output is its picture `image`, changed, at the same size.
+def list_own_names(cls: type, inputs: Mapping[str, Socket], outputs: Mapping[str, OutputSocket]) -> tuple[str, ...]:
+    """Those names of the mask that a class declares itself, as sockets or values.
 
-    A node that has a mask or a mix of its own keeps these.
+    The three belong together: `mix` and `invert_mask` are about the input `mask`, and nobody but the node knows what a
+    mask of its own does. So one of them keeps all three from being added.
     """
-    image, first = inputs.get(MASKED), next(iter(outputs.values()), None)
     names = {*inputs, *outputs, *getattr(cls, "__annotations__", ())}
+    return tuple(name for name in (MASK, *list_mask_values()) if name in names)
+
+
+def is_maskable(cls: type, inputs: Mapping[str, Socket], outputs: Mapping[str, OutputSocket], base: type) -> bool:
+    """True for a class whose first output is its picture `image`, changed, at the same size."""
+    image, first = inputs.get(MASKED), next(iter(outputs.values()), None)
     return (
         image is not None
         and image.kind is Kind.IMAGE
         and not image.optional
         and (first is None or first.socket.kind is Kind.IMAGE)
-        and names.isdisjoint({MASK, *list_mask_values()})
         and all("output_size" not in vars(parent) for parent in cls.__mro__[: cls.__mro__.index(base)])
     )

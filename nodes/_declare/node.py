@@ -14,7 +14,7 @@ from typing import Annotated, Any, ClassVar, Self, dataclass_transform, get_type
 from .camera import CameraModel
 from .draw import Draw, Drawn
 from .lengths import WORKING_UNITS, LengthUnits, declare_in_unit, is_length, resolve_length_unit, unit_factor
-from .masking import MASK, is_maskable, list_mask_values, make_mask
+from .masking import MASK, is_maskable, list_mask_values, list_own_names, make_mask
 from .sockets import Image, OutputSocket, Size, Socket
 from .traits import ProxyNote, Trait
 from .values import Doc, Missing, Value, read_value
@@ -82,6 +82,8 @@ class Node:
     has_mask: ClassVar[bool] = False
     """True if it has the input `mask` and the values `mix` and `invert_mask`, as all have that change `image` at its
     size. The mask is applied to the first output, after the node."""
+    own_mask_names: ClassVar[tuple[str, ...]] = ()
+    """Which of `mask`, `mix` and `invert_mask` the class body declares, so that none of them is added."""
     traits: ClassVar[tuple[Trait, ...]] = ()
     """What rules and tests need to know besides sockets and values."""
     proxy_notes: ClassVar[tuple[ProxyNote, ...]] = ()
@@ -111,7 +113,9 @@ class Node:
         cls.inputs = {name: item for name, item in body.items() if isinstance(item, Socket)}
         outputs = {name: item for name, item in body.items() if isinstance(item, OutputSocket)}
         own_names = tuple(body)
-        cls.has_mask = is_maskable(cls, cls.inputs, outputs, Node)
+        may_have_mask = is_maskable(cls, cls.inputs, outputs, Node)
+        cls.own_mask_names = list_own_names(cls, cls.inputs, outputs) if may_have_mask else ()
+        cls.has_mask = may_have_mask and not cls.own_mask_names
         if cls.has_mask:
             cls._add_mask()
         dataclasses.dataclass(frozen=True, kw_only=True)(cls)

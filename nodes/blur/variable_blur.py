@@ -22,7 +22,16 @@ class VariableBlur(Filter):
     white noise, and much closer on pictures.
     """
 
-    aliases = ("vari blur", "compound blur", "blur by mask", "tilt shift", "channel blur", "masked blur", "lens blur")
+    aliases = (
+        "vari blur",
+        "compound blur",
+        "blur by mask",
+        "tilt shift",
+        "miniature",
+        "channel blur",
+        "masked blur",
+        "lens blur",
+    )
 
     image = Image()
     out = OutputSocket(follows="image")

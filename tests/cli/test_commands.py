@@ -123,6 +123,36 @@ def test_nodes_for_machines(cli):
     assert one["plan"]["passes"] == [{"label": "vignette", "writes": [{"size": [1920, 1080], "format": "rgba32f"}]}]
 
 
+def list_ids(text: str) -> list[str]:
+    return re.findall(r"^  (\w+) +\S", text, re.M)
+
+
+def test_nodes_of_a_menu_and_of_another_name_are_listed(cli):
+    lens = list_ids(cli("nodes", "lens").out)
+    assert set(lens) >= {id for id, node in catalogue().items() if node.category == "lens"}
+    assert {item["id"] for item in cli("nodes", "lens", "--json").json["nodes"]} == set(lens)
+    for node in catalogue().values():
+        if node.aliases and node.aliases[0] not in catalogue():
+            assert node.id in list_ids(cli("nodes", node.aliases[0].upper()).out), node.id
+    assert list_ids(cli("nodes", "Unsharp-Mask").out) == ["sharpen"]
+    merge = cli("nodes", "merge")
+    assert merge.out.startswith("merge  (") and merge.err.startswith("the menu merge has ")
+    nothing = cli("nodes", "nowhere-at-all")
+    assert nothing.code == 2 and "there is no node, menu or installed plug-in 'nowhere-at-all'" in nothing.err
+
+
+def test_a_page_has_the_other_names_of_a_node(cli):
+    assert "\nalso known as unsharp mask, usm, " in cli("nodes", "sharpen").out
+    assert "\nAlso known as unsharp mask, usm, " in cli("nodes", "--markdown").out
+    assert cli("nodes", "sharpen", "--json").json["aliases"] == list(catalogue()["sharpen"].aliases)
+
+
+def test_no_summary_of_the_help_is_cut(cli, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    lines = cli("--help").out.partition("\nCommands:\n")[2].partition("\n\n")[0].splitlines()
+    assert len(lines) > 20 and all(line.endswith(".") and not line.endswith("...") for line in lines)
+
+
 def test_a_neutral_node_has_no_passes(cli):
     assert "  none: the picture passes through unchanged\n" in cli("nodes", "exposure").out
     assert "  none: nothing has to be drawn\n" in cli("nodes", "read_image").out
@@ -136,11 +166,11 @@ def test_fmt_rewrites_once(cli, graphs):
     path = graphs()
     messy = path.read_bytes()
     result = cli("fmt", "--check", path)
-    assert (result.code, path.read_bytes()) == (1, messy) and f"{path}: would be formatted" in result.err
+    assert (result.code, path.read_bytes()) == (1, messy) and f"{path}: would be rewritten" in result.err
     assert cli("fmt", path).code == 0 and path.read_bytes() != messy
     tidy = path.read_bytes()
     result = cli("fmt", path)
-    assert (result.code, path.read_bytes()) == (0, tidy) and "1 of 1 were formatted already" in result.err
+    assert (result.code, path.read_bytes()) == (0, tidy) and result.err == "1 file: nothing to rewrite\n"
     assert cli("fmt", "--check", path).code == 0
     assert json.loads(tidy)["nodes"]["light"]["values"] == json.loads(messy)["nodes"]["light"]["values"]
 

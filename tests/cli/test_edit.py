@@ -43,6 +43,21 @@ from halation.cli.program import run
 sys.exit(run(["edit", *sys.argv[1:]]))
 """
 
+ASKED_EARLY = """
+import os, sys
+from halation.editor.window import window
+
+open_first = window.open_first
+
+def ask_to_end(*words):
+    open_first(*words)
+    os.kill(os.getpid(), {number})
+
+window.open_first = ask_to_end
+from halation.cli.program import run
+sys.exit(run(["edit", *sys.argv[1:]]))
+"""
+
 
 @pytest.fixture
 def place(tmp_path: Path) -> dict[str, str]:
@@ -156,6 +171,14 @@ def test_it_ends_when_asked_to(place: dict[str, str], number: signal.Signals, co
         said = process.communicate(timeout=20)[1]
         assert process.returncode == code, said
     assert not held(place) and (said.count("\n"), "interrupted" in said) == (code > 0, code > 0)
+
+
+@POSIX
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGTERM, 0), (signal.SIGINT, 130), (signal.SIGHUP, 0)])
+def test_it_ends_without_a_word_before_its_first_frame(place, number: signal.Signals, code: int) -> None:
+    found, said = ended(place, LOOK, program=[sys.executable, "-c", ASKED_EARLY.format(number=int(number))])
+    assert found == code and ("interrupted" in said if code else said == ""), said
+    assert not held(place)
 
 
 @POSIX

@@ -205,7 +205,7 @@ def test_a_shader_that_the_driver_refuses(fails, graphs, monkeypatch):
     [
         (("rendr", "x"), "'rendr'"),
         (("fmt", "--chekc", "x"), "--check"),
-        (("nodes", "blom"), "there is no node 'blom'; did you mean 'bloom'?"),
+        (("nodes", "blom"), "there is no node, menu or installed plug-in 'blom'; did you mean 'bloom'?"),
         (("check",), "halation check --help"),
         (("explain", "x", "--scale", "wide"), "--scale"),
     ],

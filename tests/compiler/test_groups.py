@@ -117,7 +117,7 @@ def test_an_unknown_node_is_an_error_only_where_it_is_needed(plan):
         {"a.image": "inputs.image", "u.image": "a.out", "outputs.image": "a.out"},
     )
     assert key(plan, beside) == key(plan, light(1.0))
-    with pytest.raises(GraphError, match="node 'u': its type 'lens' is unknown"):
+    with pytest.raises(GraphError, match="node 'u' has the unknown type 'lens'"):
         plan(beside, targets={"x": Port("u", "out")})
 
 

@@ -83,7 +83,13 @@ def test_without_it_the_graph_names_the_package(site: Path, tmp_path: Path) -> N
     preset = shutil.copy(site / "acme_glow" / "presets" / "acme_dream.json", tmp_path / "dream.json")
     result = halation(tmp_path, "check", preset)
     assert result.returncode == 3
-    assert "the plug-in acme-glow 1.2.0, which is not installed: pip install acme-glow==1.2.0" in result.stdout
+    sentence = "the plug-in acme-glow 1.2.0, which is not installed: pip install acme-glow==1.2.0"
+    assert sentence in result.stdout
+    rendered = halation(tmp_path, "render", preset, "-o", "dream.png")
+    assert rendered.returncode == 3 and sentence in rendered.stderr
+    package = halation(tmp_path, "nodes", "--check", "acme-glow")
+    assert package.returncode == 2 and "did you mean" not in package.stderr
+    assert "by its package or import name; no plug-in is installed" in package.stderr
     before = Path(preset).read_bytes()
     assert halation(tmp_path, "fmt", preset).returncode == 0 and Path(preset).read_bytes() == before
 
@@ -98,6 +104,15 @@ def test_one_that_fails_to_import_is_named(site: Path, tmp_path: Path) -> None:
     assert page.returncode == 2 and sentence in page.stderr
     graph = tmp_path / "plain.json"
     graph.write_text('{"halation": 1}\n')
+    for words in (("render", "acme_glow.acme_dusk", "-o", "x.png"), ("check", "acme_glow.acme_dusk")):
+        dusk = halation(broken, *words)
+        assert dusk.returncode == 3 and sentence in dusk.stderr
+    names = halation(broken, "demo", "--list")
+    assert names.returncode == 0 and "soft_bloom" in names.stdout and sentence in names.stderr
+    doctor = [line.split()[:2] for line in halation(broken, "doctor").stdout.splitlines() if "plug-ins " in line]
+    assert doctor == [["fault", "plug-ins"]]
+    checked = halation(broken, "nodes", "--check")
+    assert (checked.returncode, checked.stderr) == (1, "1 plug-in cannot be loaded\n")
     check = halation(broken, "check", graph)
     assert check.returncode == 0 and sentence in check.stderr
     report = json.loads(halation(broken, "check", graph, "--json").stdout)
@@ -170,4 +185,21 @@ def test_a_plugin_that_cannot_be_loaded_keeps_nothing(site: Path, tmp_path: Path
     result = halation(copy, "nodes", "--check", "acme-glow")
     assert result.returncode == 1
     assert result.stdout.startswith("acme-glow 1.2.0: it cannot be loaded: acme_glow/__init__.py, line 1: Module")
-    assert halation(copy, "nodes", "--check", "acme-glaw").returncode == 2
+    misspelled = halation(copy, "nodes", "--check", "acme-glaw")
+    assert misspelled.returncode == 2 and "did you mean 'acme-glow'?" in misspelled.stderr
+
+
+def test_a_mask_of_its_own_is_mentioned(site: Path, tmp_path: Path) -> None:
+    copy = shutil.copytree(site, tmp_path / "site")
+    code = CLASS.replace("import Image", "import Field, Image").replace(
+        "    amount", "    mask = Field(1.0)\n    amount"
+    )
+    body = "finite(finite(image) * clamp(finite(mask) * finite(amount), 0.0, 1.0))"
+    shader = SHADER.replace("float", "float mask, float").replace("BODY", body)
+    (copy / "acme_glow" / "nodes" / "glow" / "soft_glow.py").write_text(code)
+    shader_file = copy / "acme_glow" / "shaders" / "glow" / "soft_glow.glsl"
+    shader_file.write_text('#include "lib/finite.glsl"\n' + shader)
+    result = halation(copy, "nodes", "--check", "acme_glow.soft_glow")
+    assert (result.returncode, result.stdout) == (0, "acme_glow.soft_glow: ok\n"), result
+    note = "it declares 'mask' itself, so that Halation adds no mask, mix and invert_mask"
+    assert f"acme_glow.soft_glow: {note}\n" in result.stderr

@@ -37,9 +37,6 @@ def write_node_page(node: type[Node], presets: Iterable[str], pictures: Collecti
     if presets := list(presets):
         links = ", ".join(f"[{name}](../presets.md#{name})" for name in presets)
         blocks += ["## Presets that use it", links]
-    if node.aliases:
-        names = ", ".join(node.aliases)
-        blocks += ["## Names in other programs", f"The search of the editor also finds it as: {names}."]
     return "\n\n".join(blocks) + "\n"
 
 

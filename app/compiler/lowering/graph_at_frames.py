@@ -9,6 +9,7 @@ from msgspec.structs import replace
 
 from ...errors import GraphError
 from ...graph import Graph, Port, evaluate_at_frame, is_animated
+from ...graph.unknown_nodes import explain_unknown
 from .expand import FlatGraph, expand, find_changed_nodes
 
 NodeAtFrame = tuple[str, int]
@@ -96,12 +97,7 @@ class GraphAtFrames:
                 continue
             flat = self.flat_at(moment[1])
             if path in flat.unknown:
-                item = flat.unknown[path]
-                fault = (
-                    item.fault
-                    or f"its type '{item.type}' is unknown to this version of Halation: update it, or remove the node"
-                )
-                raise GraphError(f"node '{path}': {fault}", node=path)
+                raise GraphError(explain_unknown(path, flat.unknown[path])[0], node=path)
             if moment in visited or path not in flat.nodes:
                 continue
             if path in open_:

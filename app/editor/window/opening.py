@@ -33,7 +33,8 @@ def run(window: Window) -> None:
     try:
         immapp.run(window.params, immapp.AddOnsParams())
     except RuntimeError:
-        if window.fault is None:  # else the library only complains that nothing was drawn
+        # The library complains that nothing was drawn where a window ends before its first frame.
+        if window.frames > 0 or not window.params.app_shall_exit:
             raise
     finally:
         window.close()
