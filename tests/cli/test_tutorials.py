@@ -1,4 +1,4 @@
-"""The tutorials work as they are written: every file that they show, every command, in order."""
+"""Tutorials and the page of jobs work as they are written: every file that they show, every command, in order."""
 
 from __future__ import annotations
 
@@ -32,10 +32,22 @@ def halation(words: list[str], folder: Path) -> subprocess.CompletedProcess[str]
 @pytest.mark.parametrize(("page", "plate"), [("pipeline", "plates/shot.exr"), ("programmer", "")])
 @pytest.mark.skipif(not shutil.which("git"), reason="git is not installed")
 def test_a_tutorial(page: str, plate: str, tmp_path: Path) -> None:
-    text = (ROOT / "docs" / f"tutorial-{page}.md").read_text(encoding="utf-8")
     if plate:
         (tmp_path / plate).parent.mkdir(exist_ok=True)
         shutil.copy(ROOT / "presets" / "samples" / "neon.exr", tmp_path / plate)
+    follow_page(f"tutorial-{page}.md", tmp_path)
+
+
+def test_each_job_of_the_page_how_to(tmp_path: Path) -> None:
+    follow_page("how-to.md", tmp_path)
+    for name in ("relit.exr", "comp.png", "film.jpg", "toon.png", "loop.0019.png", "planet.jpg", "lens.jpg"):
+        assert (tmp_path / name).stat().st_size > 1000, name
+    assert len(list((tmp_path / "graded").iterdir())) == 4
+
+
+def follow_page(page: str, tmp_path: Path) -> None:
+    """Write each file that a page shows, and run each command, in order."""
+    text = (ROOT / "docs" / page).read_text(encoding="utf-8")
     ran = 0
     for block in _BLOCK.finditer(text):
         language, body = block["language"], block["text"]
