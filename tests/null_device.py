@@ -153,6 +153,7 @@ class NullDevice:
         bindings: Bindings,
         *,
         viewport: PixelRect | None = None,
+        rows: tuple[int, int] | None = None,
     ) -> None:
         self._record(program, targets, bindings)
 
@@ -170,9 +171,9 @@ class NullDevice:
         groups: tuple[int, int, int],
         *,
         reads_images: bool,
-        bands: int = 1,
+        first_row: int = 0,
     ) -> None:
-        assert min(groups) > 0 and bands > 0
+        assert min(groups) > 0 and first_row >= 0
         self._record(program, targets, bindings)
 
     def clear(self, texture: DeviceTexture, color: tuple[float, float, float, float]) -> None:

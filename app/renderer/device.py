@@ -187,8 +187,9 @@ class Device(Protocol):
         bindings: Bindings,
         *,
         viewport: PixelRect | None = None,
+        rows: tuple[int, int] | None = None,
     ) -> None:
-        """Draw over all pixels of `targets`, or of their `viewport`."""
+        """Draw over all pixels of `targets`, or of their `viewport`; with `rows` only those of them are written."""
         ...
 
     def draw_mesh(
@@ -205,12 +206,12 @@ class Device(Protocol):
         groups: tuple[int, int, int],
         *,
         reads_images: bool,
-        bands: int = 1,
+        first_row: int = 0,
     ) -> None:
         """Run a compute program whose work groups write all pixels of `targets`.
 
         With `reads_images` textures are bound to image units, before the targets, instead of texture units. The rows of
-        groups are dispatched in so many `bands`; the uniform `first_row` says where a band begins.
+        groups begin at `first_row`: a band of a picture may be computed by itself.
         """
         ...
 

@@ -17,6 +17,11 @@ if TYPE_CHECKING:
     from ...compiler import Pass
 
 
+STEP_SECONDS = 0.04
+"""Seconds that a part of a pass should take: with what a frame of the window costs itself, well below the 0.1 s after
+which a reply no longer seems immediate (Nielsen 1993)."""
+
+
 class PictureJob:
     """A frame of a request, for some of its ports. Raises the errors of `app.errors`, from the first line on.
 
@@ -85,7 +90,7 @@ class PictureJob:
         if self.run is None:
             self._plan_next()
             return False
-        if next(self.run, None) is not None:
+        if self.run.step(STEP_SECONDS):
             return False
         self.finished_passes += self.run.total
         return self._runs is None or not self._start_next_run()

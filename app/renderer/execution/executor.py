@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Generator, Iterable, Iterator
 from concurrent.futures import CancelledError, Future
 from contextlib import contextmanager, suppress
 from functools import partial
+from itertools import count
 
 import numpy as np
 from msgspec import Struct
+from msgspec.structs import replace
 
 from ...compiler import FIRST_TABLE, MAX_WEIGHTS, Pass, Plan, Surface, Upload
 from ...errors import HalationError, InputError, RenderError, describe_owner
@@ -37,6 +40,12 @@ BAND_PIXELS = 2**21
 """The software rasterizer computes at most so many pixels at a time: an interrupt is heard only in between. A picture
 of 1920x1080 is still one piece."""
 
+
+FIRST_SHARE = 256
+"""The first band of code has this part of the rows: a pass of ten seconds then holds up others for 0.04 s at first."""
+
+MAX_GROWTH = 8
+"""How many times as high as the last band a band may be: code that is quick is done in four bands."""
 
 _HOST_SECONDS = 0.5
 """What a picture of a program on the processor is assumed to cost at least, where a run did not wait for it: Open Image
@@ -67,6 +76,7 @@ class Executor:
         self._pending = PendingPrograms(device, self.programs)
         self._beacon = ProgressBeacon()
         self._host_jobs = HostJobs()
+        self._draft_numbers = count()
 
     def close(self) -> None:
         """Give everything back."""
@@ -121,13 +131,23 @@ class Executor:
 
     def execute(self, plan: Plan, render_pass: Pass, lease: TextureLease) -> None:
         """Run a pass whose textures are on the device. Raises ShaderError, DeviceError, RenderError."""
+        for _ in self.execute_in_bands(plan, render_pass, lease):
+            pass
+
+    def execute_in_bands(
+        self, plan: Plan, render_pass: Pass, lease: TextureLease, seconds: float = math.inf
+    ) -> Generator[None, None, None]:
+        """Run a pass as `execute` does, with a stop after every band that takes about so many seconds.
+
+        Code of users is taken to be slow, and other passes if they were before.
+        """
         self._await_trial(plan, render_pass)
         if render_pass.host is not None:
             self._execute_on_host(plan, render_pass, lease)
             return
         self._pending.wait_for(render_pass)
         with self._watch(render_pass):
-            self._execute(plan, render_pass, lease)
+            yield from self._execute(plan, render_pass, lease, seconds)
 
     def begin_host_job(self, plan: Plan, render_pass: Pass) -> HostJob | None:
         """Begin the work of a pass on the processor, whose textures are on the device; None where it is done."""
@@ -200,67 +220,115 @@ class Executor:
             yield
             self.device.finish()
 
-    def _execute(self, plan: Plan, render_pass: Pass, lease: TextureLease) -> None:
-        """Run a pass for those of its pictures that are not stored yet. If it fails, none of them stays under its key,
-        for a picture that is drawn in part must not be taken for a whole one.
+    def _execute(self, plan: Plan, render_pass: Pass, lease: TextureLease, seconds: float) -> Iterator[None]:
+        """Run a pass for those of its pictures that are not stored yet.
+
+        Until it is done they have keys of their own: what else is rendered between two bands, or after a failure, must
+        not take a picture that is drawn in part for a whole one.
         """
         surfaces = [plan.surfaces[number] for number in render_pass.targets]
-        missing = [surface for surface in surfaces if surface.key not in self.textures]
+        drafts = {
+            surface.key: replace(surface, key=f"draft {next(self._draft_numbers)}")
+            for surface in surfaces
+            if surface.key not in self.textures
+        }
         for surface in surfaces:
-            if surface not in missing:
+            if surface.key not in drafts:
                 lease.add(surface.key)
-        if not missing:  # another run was quicker
+        if not drafts:  # another run was quicker
             self.counters.skipped += 1
             return
-        program = self.programs.get(render_pass)
-        textures = [self.find_texture(plan, number).handle for number in render_pass.textures]
         try:
-            for surface in missing:
-                lease.create(surface)
-            targets = [self.find_texture(plan, number) for number in render_pass.targets]
-            for name, number in render_pass.uniforms:
-                program.set(name, number)
-            started = time.perf_counter()
-            self._run_pass(plan, render_pass, program, textures, [target.handle for target in targets])
-            if render_pass.shader.form == "compute" and self.device.target.software:  # which returns when it is done
-                self._costs.record_time(plan, render_pass, time.perf_counter() - started)
+            for draft in drafts.values():
+                lease.create(draft)
+            keys = [drafts.get(surface.key, surface).key for surface in surfaces]
+            yield from self._run_bands(plan, render_pass, keys, seconds)
             if error := self.device.take_error():
                 raise RenderError(
                     f"{describe_owner(', '.join(render_pass.nodes))}: {self.device.target.renderer} reports {error}",
                     node=render_pass.nodes[-1],
                 )
         except BaseException:
-            for surface in missing:
-                lease.discard(surface.key)
+            for draft in drafts.values():
+                lease.discard(draft.key)
             raise
         cost = self._costs.estimate(plan, render_pass)
-        for target in targets:
-            target.cost = cost
+        for key, draft in drafts.items():
+            if key in self.textures:  # another run was quicker
+                lease.discard(draft.key)
+                lease.add(key)
+            else:
+                lease.rename(draft.key, key)
+                self._find(key).cost = cost
         self.counters.passes += 1
+
+    def _run_bands(self, plan: Plan, render_pass: Pass, targets: list[str], seconds: float) -> Iterator[None]:
+        """Run a pass band by band, for targets with these keys. A band is as high as the time of the last one says.
+
+        Between two bands others may use the device, so that each band asks for its program and textures again.
+        """
+        is_limited, is_compute = math.isfinite(seconds), render_pass.shader.form == "compute"
+        total = render_pass.groups[1] if is_compute else plan.surfaces[render_pass.targets[0]].size[1]
+        row, height, spent = 0, self._choose_rows(plan, render_pass, total, seconds), 0.0
+        while row < total:
+            end = min(row + height, total)
+            program = self.programs.get(render_pass)
+            textures = [self.find_texture(plan, number).handle for number in render_pass.textures]
+            for name, number in render_pass.uniforms:
+                program.set(name, number)
+            started = time.perf_counter()
+            rows = (row, end) if (row, end) != (0, total) else None
+            self._run_pass(render_pass, program, textures, [self._find(key).handle for key in targets], rows)
+            row = end
+            if is_limited and row < total:
+                self.device.finish()
+            elapsed = time.perf_counter() - started
+            spent += elapsed
+            if row < total:
+                yield
+            if is_limited:
+                height = max(1, min(int(height * seconds / max(elapsed, 1e-6)), MAX_GROWTH * height))
+        if is_compute and self.device.target.software:  # which returns when it is done
+            self._costs.record_time(plan, render_pass, spent)
+
+    def _choose_rows(self, plan: Plan, render_pass: Pass, total: int, seconds: float) -> int:
+        """The rows of the first band: few of code of users, whose time is not known; all if the pass may be quick."""
+        if render_pass.mesh is not None:
+            return total
+        rows = total
+        if render_pass.shader.form == "compute" and self.device.target.software:
+            width, height = plan.surfaces[render_pass.targets[0]].size
+            rows = -(-total // -(-width * height // BAND_PIXELS))
+        if not math.isfinite(seconds):
+            return rows
+        if render_pass.writers:
+            return min(rows, max(1, total // FIRST_SHARE))
+        estimate = self._costs.estimate(plan, render_pass)
+        return max(1, int(rows * seconds / estimate)) if estimate > seconds else rows
 
     def _run_pass(
         self,
-        plan: Plan,
         render_pass: Pass,
         program: DeviceProgram,
         textures: list[DeviceTexture],
         targets: list[DeviceTexture],
+        rows: tuple[int, int] | None,
     ) -> None:
-        """Ask the device for a pass: triangles of a mesh, a dispatch, or a draw over all pixels."""
+        """Ask the device for a pass, or for a band of it: triangles of a mesh, a dispatch, or a draw over pixels."""
         shader, bindings = render_pass.shader, self._bind(render_pass, textures)
         if render_pass.mesh is not None:
             mesh = self._meshes.get(render_pass.mesh, partial(self.device.create_mesh, render_pass.mesh))
             self.device.draw_mesh(program, targets, bindings, mesh)
         elif shader.form == "compute":
-            width, height = plan.surfaces[render_pass.targets[0]].size
-            bands = -(-width * height // BAND_PIXELS) if self.device.target.software else 1
-            groups, images = render_pass.groups, shader.reads_images
-            self.device.dispatch(program, targets, bindings, groups, reads_images=images, bands=bands)
+            across, down, blocks = render_pass.groups
+            first, end = rows or (0, down)
+            groups = (across, end - first, blocks)
+            self.device.dispatch(program, targets, bindings, groups, reads_images=shader.reads_images, first_row=first)
         else:
-            if shader.foreign:  # it may leave pixels out
+            if shader.foreign and (rows is None or rows[0] == 0):  # it may leave pixels out
                 for target in targets:
                     self.device.clear(target, (0.0, 0.0, 0.0, 0.0))
-            self.device.draw(program, targets, bindings)
+            self.device.draw(program, targets, bindings, rows=rows)
 
     def _bind(self, render_pass: Pass, textures: list[DeviceTexture]) -> Bindings:
         """What a pass reads: its textures, and its tables and weights, uploaded where they are not there yet."""
@@ -279,8 +347,11 @@ class Executor:
 
     def find_texture(self, plan: Plan, number: int) -> PooledTexture:
         """The texture of a surface that has a lease."""
-        texture = self.textures.find(plan.surfaces[number].key)
-        assert texture is not None, f"surface {number} is gone before its last reader"
+        return self._find(plan.surfaces[number].key)
+
+    def _find(self, key: str) -> PooledTexture:
+        texture = self.textures.find(key)
+        assert texture is not None, f"{key} is gone before its last reader"
         return texture
 
     def download(self, plan: Plan, number: int, arrays: ArrayPool) -> Array:

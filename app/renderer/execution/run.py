@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Container, Iterable
+from collections.abc import Callable, Container, Generator, Iterable
+from itertools import islice
 from types import TracebackType
 
 from ...compiler import Pass, Plan
@@ -52,6 +54,13 @@ class Run(ABC):
         """Execute the next pass. Raises the errors of `app.errors`, which end the run."""
         ...
 
+    def step(self, seconds: float) -> bool:
+        """Execute the next pass, or about so many seconds of it where it can be divided; False at the end.
+
+        Raises what `__next__` raises.
+        """
+        return next(self, None) is not None
+
     def __enter__(self) -> Run:
         return self
 
@@ -90,6 +99,8 @@ class WholeRun(Run):
         self._readers = _count_readers(plan, self._needed_passes, self._requested)
         self._decode_queue = start_decoding(find_needed_uploads(plan, self._needed_passes, self._requested, textures))
         self._lease = TextureLease(textures)
+        self._bands: Generator[None, None, None] | None = None
+        """What is left of a pass of which a part is done."""
         executor.begin_programs(plan, (plan.passes[index] for index in self._needed_passes))
         for key in self._readers:
             if key in textures:
@@ -115,23 +126,34 @@ class WholeRun(Run):
         return ends or self._is_done_on_host()
 
     def __next__(self) -> Pass:
+        passes_done = self.passes_done
+        while self.step(math.inf):
+            if self.passes_done > passes_done:
+                return self.plan.passes[self._needed_passes[passes_done]]
+        raise StopIteration
+
+    def step(self, seconds: float) -> bool:
         if self.has_ended:
-            raise StopIteration
+            return False
         try:
             with self._executor.device.make_current():
                 if self.passes_done < self.total:
-                    return self._execute_next()
+                    self._execute_next(seconds)
+                    return True
                 self._finish()
         except BaseException:
             self.close()
             raise
         self.close()
-        raise StopIteration
+        return False
 
     def close(self) -> None:
         if self.has_ended:
             return
         self.has_ended = True
+        if self._bands is not None and not self._executor.closed:
+            with self._executor.device.make_current():
+                self._bands.close()
         self._decode_queue.cancel()
         if self.passes_done < self.total:
             self._executor.abandon_host_job(self.plan, self.plan.passes[self._needed_passes[self.passes_done]])
@@ -142,11 +164,17 @@ class WholeRun(Run):
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
-    def _execute_next(self) -> Pass:
+    def _execute_next(self, seconds: float) -> None:
+        """Execute the next pass, or a band of it; one that is timed is not divided."""
         render_pass = self.plan.passes[self._needed_passes[self.passes_done]]
-        self._upload(render_pass.textures)
+        if self._bands is None:
+            self._upload(render_pass.textures)
         if self._timings is None:
-            self._executor.execute(self.plan, render_pass, self._lease)
+            if self._bands is None:
+                self._bands = self._executor.execute_in_bands(self.plan, render_pass, self._lease, seconds)
+            if any(True for _ in islice(self._bands, 1)):
+                return
+            self._bands = None
         else:
             self._timings.append((render_pass, self._executor.measure(self.plan, render_pass, self._lease)))
         for number in render_pass.textures:
@@ -155,7 +183,6 @@ class WholeRun(Run):
             if self._readers[key] == 0:
                 self._lease.release(key)
         self.passes_done += 1
-        return render_pass
 
     def _is_done_on_host(self) -> bool:
         """False while the next pass works on the processor. Begins that work."""

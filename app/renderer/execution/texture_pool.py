@@ -152,6 +152,10 @@ class TexturePool:
         texture.freed_round = self._round
         self._free.setdefault(texture.kind, []).append(texture)
 
+    def rename(self, key: str, new_key: str) -> None:
+        """Keep leased pixels, which nobody else has, under another key, which is free."""
+        self._results[new_key], self._leases[new_key] = self._results.pop(key), self._leases.pop(key)
+
     # --- parts -------------------------------------------------------------------------------------------------------
 
     def _remove_from_idle(self, key: str) -> None:
@@ -206,6 +210,12 @@ class TextureLease:
         texture = self._textures.create(surface)
         self._keys.add(surface.key)
         return texture
+
+    def rename(self, key: str, new_key: str) -> None:
+        """Keep pixels that this lease has created under another key, which is free."""
+        self._textures.rename(key, new_key)
+        self._keys.remove(key)
+        self._keys.add(new_key)
 
     def add(self, key: str) -> None:
         """Keep these pixels."""

@@ -106,6 +106,7 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
         bindings: Bindings,
         *,
         viewport: PixelRect | None = None,
+        rows: tuple[int, int] | None = None,
     ) -> None:
         self._bind(bindings)
         self._note_written(targets)
@@ -115,6 +116,8 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
         framebuffer = self._framebuffer(targets)
         if viewport is not None:
             framebuffer.viewport = viewport
+        if rows is not None:
+            framebuffer.scissor = (0, rows[0], targets[0].size[0], rows[1] - rows[0])
         framebuffer.use()
         self.context.disable(moderngl.BLEND | moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         cast("OpenGLProgram", program).draw()
@@ -122,6 +125,8 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
             self._interpolation.clear(unit)
         if viewport is not None:
             framebuffer.viewport = (0, 0, *targets[0].size)
+        if rows is not None:
+            framebuffer.scissor = None
         self._idle.use()
         if len(targets) > 1:
             framebuffer.release()
@@ -153,7 +158,7 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
         groups: tuple[int, int, int],
         *,
         reads_images: bool,
-        bands: int = 1,
+        first_row: int = 0,
     ) -> None:
         handle = cast("OpenGLProgram", program).handle
         assert isinstance(handle, moderngl.ComputeShader)
@@ -162,11 +167,8 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
         first = len(bindings.textures) if reads_images else 0
         for unit, texture in enumerate(_handles(targets), first):
             texture.bind_to_image(unit, read=False, write=True)
-        across, down, blocks = groups
-        rows = -(-down // bands)
-        for row in range(0, down, rows):
-            program.set("first_row", row)
-            handle.run(across, min(rows, down - row), blocks)
+        program.set("first_row", first_row)
+        handle.run(*groups)
         self.context.memory_barrier()
 
     def clear(self, texture: DeviceTexture, color: tuple[float, float, float, float]) -> None:
