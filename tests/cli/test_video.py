@@ -129,7 +129,7 @@ def test_the_rate_of_the_graph_counts(cli, graphs, clip, tmp_path):
 
 
 def test_what_cannot_be_written_is_said_before_anything_is_rendered(fails, movie, monkeypatch):
-    monkeypatch.setattr(Executor, "execute", lambda *_: pytest.fail("something was rendered"))
+    monkeypatch.setattr(Executor, "execute_in_bands", lambda *_: pytest.fail("something was rendered"))
     graph = movie()
     for words, code, said in (
         (("-o", "a.mp4", "--codec", "vp9"), 2, "such a file holds no codec 'vp9'"),

@@ -11,7 +11,7 @@ from concurrent.futures import Future
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from functools import cached_property
 from threading import current_thread, get_ident
-from typing import cast
+from typing import Any, cast
 
 import moderngl
 import numpy as np
@@ -126,7 +126,7 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
         if viewport is not None:
             framebuffer.viewport = (0, 0, *targets[0].size)
         if rows is not None:
-            framebuffer.scissor = None
+            cast("Any", framebuffer).scissor = None  # whose stub has no None
         self._idle.use()
         if len(targets) > 1:
             framebuffer.release()

@@ -50,13 +50,13 @@ def texels(engine: Renderer, monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """How many pixels each pass makes from now on."""
     made: list[int] = []
     executor = engine.runner._executor
-    execute = executor.execute
+    execute = executor.execute_in_bands
 
-    def counted(plan, one, lease):
+    def counted(plan, one, lease, seconds):
         made.append(max(plan.surfaces[number].size[0] * plan.surfaces[number].size[1] for number in one.targets))
-        return execute(plan, one, lease)
+        return execute(plan, one, lease, seconds)
 
-    monkeypatch.setattr(executor, "execute", counted)
+    monkeypatch.setattr(executor, "execute_in_bands", counted)
     return made
 
 
