@@ -18,11 +18,11 @@ from halation.resources.sandbox import UNRESTRICTED
 from imgui_bundle import imgui
 
 
-def main(graph: Path, report: Path, state: Path) -> None:
+def main(graph: Path, report: Path, state: Path, *, tears_off: bool = False) -> None:
     """Open a graph until the window is closed."""
     window = Window(graph, {}, UNRESTRICTED, version=(4, 5), state=state, size=(1200, 700))
     window.params.ini_disable = True
-    window.params.imgui_window_params.enable_viewports = True
+    window.params.imgui_window_params.enable_viewports = tears_off
     before = window.params.callbacks.after_swap
 
     def write_report() -> None:  # when the frame is shown: an idle editor may not draw another one
@@ -53,4 +53,4 @@ def main(graph: Path, report: Path, state: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(*map(Path, sys.argv[1:4]))
+    main(*map(Path, sys.argv[1:4]), tears_off=sys.argv[4:] == ["tears_off"])

@@ -54,7 +54,7 @@ class Recent:
 @dataclass(frozen=True)
 class Preferences:
     """`ui_scale` is 0 for what the system says. `keymap` is the program whose shortcuts are used, `shortcuts` are those
-    that differ from it, by action; "" stands for none.
+    that differ from it, by action; "" stands for none. `separate_windows` lets panels be torn off.
 
     `recent` has the newest first. `folders` are those used last, by purpose. `autosave` is in seconds,
     `memory_budget` in MiB. `isf_folders` hold shaders that can be added, `preset_folders` presets. `swatches` are
@@ -63,6 +63,7 @@ class Preferences:
 
     theme: Literal["dark", "light", "contrast"] = "dark"
     reduced_motion: bool = False
+    separate_windows: bool = False
     ui_scale: float = 0.0
     keymap: Literal["halation", "nuke", "blender", "fusion"] = "halation"
     shortcuts: Mapping[str, str] = field(default_factory=lambda: MappingProxyType[str, str]({}))

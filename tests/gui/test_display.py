@@ -152,7 +152,7 @@ def test_an_artist_at_a_real_display(tmp_path: Path) -> None:
 def test_a_panel_is_torn_off_and_the_window_has_all_of_its_pixels_after_its_size_has_changed(tmp_path: Path) -> None:
     report = tmp_path / "report.json"
     script = Path(__file__).parents[1] / "display_editor.py"
-    words = (sys.executable, script, presets.paths()[0], report, tmp_path / "state")
+    words = (sys.executable, script, presets.paths()[0], report, tmp_path / "state", "tears_off")
     with open_display() as environment, run_process(*words, env=environment):
         desk = Desktop(environment, report)
         desk.point_at("viewer image")  # the window manager has taken over the window by then

@@ -93,6 +93,7 @@ class PreferencesDialog:
             imgui.same_line()
             draw_dim(self._context, "own")
         _draw_switch(self._context, "reduced_motion", "Less motion: nothing blinks or fades")
+        _draw_switch(self._context, "separate_windows", "Panels outside of the window (from the next start)")
         _draw_heading(self._context, "Graph")
         _draw_switch(self._context, "thumbnails", "Thumbnails on nodes")
         _draw_switch(self._context, "timings", "Time and memory of each node")

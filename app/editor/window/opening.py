@@ -10,7 +10,7 @@ from pathlib import Path
 
 from imgui_bundle import hello_imgui, immapp
 
-from ...authoring.preferences import state_folder
+from ...authoring.preferences import PreferenceStore, state_folder
 from ...resources.sandbox import Sandbox
 from .opengl import best_version
 from .window import Window
@@ -21,7 +21,8 @@ def open_window(path: Path | None, bindings: Mapping[str, str], sandbox: Sandbox
     state = state_folder()
     window = Window(path, bindings, sandbox, version=best_version(), state=state)
     keep_layout(window.params, state)
-    window.params.imgui_window_params.enable_viewports = os.environ.get("HALATION_WINDOW") != "none"
+    is_visible = os.environ.get("HALATION_WINDOW") != "none"
+    window.params.imgui_window_params.enable_viewports = is_visible and PreferenceStore(state).current.separate_windows
     with _close_on_signals(window) as signals:
         run(window)
     if signal.SIGINT in signals:
