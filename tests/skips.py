@@ -46,6 +46,7 @@ REASONS: dict[str, Cause] = {
     "libjpeg ends the process of whoever writes it": "case",
     "it is never part of a drag": "case",
     "Dask is not installed": "tool",
+    "check-jsonschema is not installed": "tool",
     "PyAV is not installed": "tool",
     "pyoidn is not installed": "tool",
     "this PyAV has no encoder": "tool",

@@ -6,11 +6,13 @@ import contextlib
 import logging
 import os
 import re
+import socket
 import time
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, cast
+from urllib.parse import urlsplit
 
 from ..errors import RenderError, UsageError
 from .worker_task import open_pool
@@ -21,7 +23,12 @@ if TYPE_CHECKING:
     from ..renderer.jobs.render_job import RenderJob
 
 CONNECT_SECONDS = 5.0
-"""Seconds until a scheduler must answer: a choice, many times what a connection through a continent takes."""
+"""Seconds until somebody must listen at an address: a choice, many times what a connection across a continent takes.
+"""
+
+ANSWER_SECONDS = 30.0
+"""Seconds until a scheduler that listens must answer: with eight busy processes for each core, it may take more than
+five (seen in `tests/cluster/campaign.py`)."""
 
 RETURN_SECONDS = 30.0
 """Seconds that a job waits for a scheduler that has gone: a choice. Supervisors such as systemd start it again within a
@@ -69,7 +76,9 @@ def _connect(address: str, count: int) -> Iterator[Client]:
     with contextlib.ExitStack() as stack:
         target: str | LocalCluster = stack.enter_context(_start_cluster(count)) if count else address
         try:
-            client = distributed.Client(target, timeout=CONNECT_SECONDS, set_as_default=False)
+            if not count:
+                _await_listener(address)
+            client = distributed.Client(target, timeout=ANSWER_SECONDS, set_as_default=False)
         except (OSError, TimeoutError, ValueError, TypeError) as fault:
             reason = "" if isinstance(fault, OSError | TimeoutError) else f" ({fault})"
             raise RenderError(
@@ -81,6 +90,22 @@ def _connect(address: str, count: int) -> Iterator[Client]:
         finally:
             with contextlib.suppress(Exception):  # whatever Dask says of a connection that is gone anyway
                 client.close(timeout=1)
+
+
+def _await_listener(address: str) -> None:
+    """Wait until somebody listens at an address. Raises OSError, or ValueError for what is no address."""
+    parts = urlsplit(address)
+    if parts.scheme not in ("tcp", "tls") or not parts.hostname or not parts.port:
+        return  # of a kind that only Dask knows
+    deadline = time.monotonic() + CONNECT_SECONDS
+    while True:
+        try:
+            socket.create_connection((parts.hostname, parts.port), CONNECT_SECONDS).close()
+            return
+        except OSError:
+            if time.monotonic() > deadline:
+                raise
+        time.sleep(_RETRY_INTERVAL)
 
 
 @contextmanager

@@ -108,6 +108,17 @@ def test_a_script_of_slurm_is_clean_and_renders(cli, shot_folder):
         assert farm.read_bytes() == local.read_bytes()
 
 
+def test_a_workflow_is_valid_by_the_schema_of_github(cli, shot_folder):
+    pytest.importorskip("check_jsonschema", reason="check-jsonschema is not installed")
+    assert submit(cli, "-o", "out/f.####.exr", "--actions", "flow.yml").code == 0
+    words = (str(BIN / "check-jsonschema"), "--builtin-schema", "vendor.github-workflows")
+    checked = run(*words, "flow.yml")
+    assert checked.returncode == 0, checked.stdout
+    flow = shot_folder / "flow.yml"
+    flow.write_text(flow.read_text().replace("runs-on", "run-on"))
+    assert run(*words, "flow.yml").returncode == 1
+
+
 @POSIX
 def test_the_command_of_a_workflow_renders(cli, shot_folder):
     assert submit(cli, "-o", "out/f.####.exr", "--actions", "flow.yml").code == 0
