@@ -160,8 +160,8 @@ def test_a_panel_is_torn_off_and_the_window_has_all_of_its_pixels_after_its_size
         desk.until(lambda facts: facts["places"]["Scopes"][2] <= 800)
         left, top, *_ = map(round, desk.find_still_place("Scopes"))  # its tab, dragged out, becomes a window
         desk.xdotool("search", "--name", "Halation$", "mousemove", "--window", "%1", left + 36, top + 12)
-        desk.xdotool("mousedown", 1, *(50 * ("mousemove_relative", 10, 0, "sleep", 0.02)))
-        desk.until(lambda facts: facts["windows"] == 2 and facts["places"]["Scopes"][0] > 800)
+        desk.xdotool("mousedown", 1, *(50 * ("mousemove_relative", 10, 4, "sleep", 0.02)))
+        desk.until(lambda facts: facts["windows"] == 2 and facts["places"]["Scopes"][0] > left)
         desk.xdotool("mouseup", 1)
         for width, height in ((1000, 600), (1250, 720), (900, 560)):
             before = desk.facts["size"]
