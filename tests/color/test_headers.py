@@ -14,7 +14,7 @@ from halation.color.file_space import CHROMATICITIES
 from halation.color.header_space import REC709, HeaderSpace, make_gamut_matrix
 from halation.color.management import get_color_manager, get_default_color_manager
 from halation.errors import InputError
-from halation.media import read_layer
+from halation.media import read_info, read_layer
 from halation.media.color_spaces import describe_color_spaces, find_layer_spaces
 from halation.nodes import ColorSettings, Kind
 from halation.resources.sandbox import UNRESTRICTED
@@ -207,6 +207,23 @@ def test_portable_maps(tmp_path, ending, format):
     else:
         expected = ((stored + 0.055) / 1.055) ** 2.4 if stored.max() < 1.0 else 1.0
         np.testing.assert_allclose(rgb(path)[..., :1], expected, rtol=1e-3)
+
+
+@pytest.mark.parametrize("format", ["uint8", "uint16"])
+def test_a_later_page_of_a_tiff_is_read_as_the_first_one(tmp_path, format):
+    """OpenImageIO gives later pages names of spaces that nobody wrote."""
+    path, spec = tmp_path / "a.tif", oiio.ImageSpec(5, 4, 3, format)
+    file, pages = oiio.ImageOutput.create(str(path)), [np.full((4, 5, 3), code, np.float32) for code in (0.2, 0.6)]
+    for mode, page in zip(("Create", "AppendSubimage"), pages, strict=True):
+        assert file.open(str(path), spec, mode) and file.write_image(page)
+    assert file.close()
+    names = [layer.name for layer in read_info(path, sandbox=UNRESTRICTED).layers]
+    assert len(names) == 2
+    for name, page in zip(names, pages, strict=True):
+        stored = read_layer(path, name, Kind.FIELD, sandbox=UNRESTRICTED).array
+        np.testing.assert_allclose(stored[..., 0], page[..., 0], atol=2e-3)
+        array = read_layer(path, name, Kind.IMAGE, sandbox=UNRESTRICTED).array
+        np.testing.assert_allclose(array[..., :1], ((stored + 0.055) / 1.055) ** 2.4, rtol=1e-3)
 
 
 def test_a_name_that_the_author_wrote_is_refused(tmp_path, light):
