@@ -43,6 +43,17 @@ def find_preset(name: str) -> Path | None:
     return next((path for path in presets.paths() if path.stem == name), None) or name_library().get(name)
 
 
+def is_installed(preset: Path) -> bool:
+    """True for a preset of Halation or of a plug-in whose folder is an installation, which an update replaces.
+
+    In a checkout, which has a pyproject.toml above, presets are files to work on. Those of the user are too.
+    """
+    path = preset.resolve()
+    folders = [presets.sample().parents[1], *(plugin.folder / "presets" for plugin in plugins() if plugin.folder)]
+    in_checkout = any((folder / "pyproject.toml").is_file() for folder in path.parents)
+    return not in_checkout and path.parent in {folder.resolve() for folder in folders}
+
+
 def find_refused_plugin(name: str) -> Plugin | None:
     """The plug-in that cannot be loaded and would bring what a name with a namespace stands for: a node or a preset."""
     if "." not in name:

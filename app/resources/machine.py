@@ -71,3 +71,12 @@ def describe_processor() -> str:
         return ""
     lines = re.findall(r"^(?:model name|flags|Features|CPU part)\s*:\s*(.*)$", text.partition("\n\n")[0], re.MULTILINE)
     return "\n".join(lines)
+
+
+def suggest_driver() -> str:
+    """What a user does where OpenGL cannot be opened, as the end of a sentence."""
+    if sys.platform.startswith("linux"):
+        return "install a graphics driver or the software rasterizer (Debian, Ubuntu: apt-get install libegl1 libgl1)"
+    if sys.platform == "win32":
+        return "install the graphics driver of your card's maker"
+    return "run where a window system is available"

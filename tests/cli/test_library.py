@@ -15,6 +15,7 @@ from halation.authoring.edits.extracting import extract_graph
 from halation.authoring.library import PresetLibrary, find_preset_file, make_preset_name, save_preset, split_tags
 from halation.authoring.preferences import PreferenceStore
 from halation.authoring.session import Session
+from halation.custom_nodes.plugins import is_installed
 from halation.document.about import About, read_about
 from halation.editor.shared.entries import preset_entries, rank_entries
 from halation.errors import DocumentError, GraphError, UsageError
@@ -181,3 +182,16 @@ def test_another_description_replaces_the_old_one(own: Path) -> None:
     assert read_about(own / "two.json", sandbox=UNRESTRICTED) == About()
     with pytest.raises(DocumentError):
         read_about(Path(__file__), sandbox=UNRESTRICTED)
+
+
+@pytest.mark.parametrize("is_checkout", [True, False])
+def test_presets_of_an_installation_are_not_edited_in_place(tmp_path, monkeypatch, is_checkout):
+    """An update would replace them. In a checkout they are files to work on."""
+    folder = tmp_path / "halation" / "presets"
+    (folder / "samples").mkdir(parents=True)
+    (folder / "look.json").write_text("{}")
+    monkeypatch.setattr(presets, "sample", lambda: folder / "samples" / "neon.exr")
+    if is_checkout:
+        (tmp_path / "pyproject.toml").write_text("")
+    assert is_installed(folder / "look.json") is not is_checkout
+    assert not is_installed(tmp_path / "look.json")

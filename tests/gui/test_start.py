@@ -6,6 +6,7 @@ import shutil
 from pathlib import Path
 
 from halation import document, presets
+from halation.editor.window import assembly
 from halation.resources.sandbox import UNRESTRICTED
 from imgui_bundle import imgui
 
@@ -106,3 +107,15 @@ def test_recent_documents_have_the_picture_that_was_saved(gui, tmp_path: Path) -
 
     gui(save, path)
     gui(look)
+
+
+def test_a_preset_of_an_installation_opens_as_a_new_document(gui, monkeypatch) -> None:
+    """To save it needs a place of the user's own."""
+    monkeypatch.setattr(assembly, "is_installed", lambda path: True)
+    path = presets.paths()[0]
+
+    def body(ui) -> None:
+        ui.settled()
+        assert ui.session.path is None and ui.session.graph.nodes == document.load(path, sandbox=UNRESTRICTED).nodes
+
+    gui(body, path)

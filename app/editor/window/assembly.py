@@ -15,6 +15,7 @@ from ...authoring.preview.color_fallback import ColorFallback
 from ...authoring.recovery.recovery import RecoveryFile
 from ...authoring.render_queue import RenderQueue
 from ...authoring.session import Session
+from ...custom_nodes.plugins import is_installed
 from ...graph import Graph
 from ...inputs.provider import MediaProvider
 from ...media.pictures.file_endings import is_picture
@@ -80,8 +81,11 @@ def open_first(editor: Editor, path: Path | None, bindings: Mapping[str, str]) -
     if is_picture(path):
         editor.session.files.open_pictures([path])
         return
-    editor.session.files.open(path)
-    editor.store.note_opened(path)
+    if is_installed(path):
+        editor.session.files.open_copy(path)
+    else:
+        editor.session.files.open(path)
+        editor.store.note_opened(path)
     for name, file in bindings.items():
         editor.session.bind(name, file)
 

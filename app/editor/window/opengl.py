@@ -10,6 +10,7 @@ from imgui_bundle import hello_imgui  # noqa: F401  (first: both must use the sa
 import glfw  # isort: skip
 
 from ...errors import DeviceError
+from ...resources.machine import suggest_driver
 
 _VERSIONS = ((4, 5), (4, 3), (4, 1))
 _NO_WINDOW = (
@@ -36,7 +37,7 @@ def best_version() -> tuple[int, int]:
             glfw.terminate()
     if version is None:
         raise DeviceError(
-            "no window with OpenGL 4.1 can be opened here: update the graphics driver; 'halation render' may still work"
+            f"no window with OpenGL 4.1 can be opened here: {suggest_driver()}; 'halation render' may still work"
         )
     if not visible:
         needs_no_display()

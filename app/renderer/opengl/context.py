@@ -8,6 +8,7 @@ from collections.abc import Callable
 import moderngl
 
 from ...errors import DeviceError
+from ...resources.machine import suggest_driver
 from .device import OLDEST, OpenGLDevice, describe_target
 from .driver_settings import DriverSettings
 from .warming import EGL_LIBRARY, GL, wait_for_driver
@@ -39,12 +40,4 @@ def _create_context() -> moderngl.Context:
         except Exception as fault:  # moderngl and its loaders raise plain Exceptions
             faults.append(str(fault).strip().rstrip("."))
     reasons = "; ".join(dict.fromkeys(faults))
-    raise DeviceError(f"OpenGL {OLDEST / 100:.1f} cannot be opened ({reasons}): {_suggest_installation()}")
-
-
-def _suggest_installation() -> str:
-    if sys.platform.startswith("linux"):
-        return "install a graphics driver or the software rasterizer (Debian, Ubuntu: apt-get install libegl1 libgl1)"
-    if sys.platform == "win32":
-        return "install the graphics driver of your card's maker"
-    return "run where a window system is available"
+    raise DeviceError(f"OpenGL {OLDEST / 100:.1f} cannot be opened ({reasons}): {suggest_driver()}")
