@@ -1,14 +1,18 @@
-"""Slow motion of antialiased layers against the mean over many moments, each sampled 12 x 12 times a pixel."""
+"""Slow motion of antialiased layers against the mean over many moments, sampled 12 x 12 times a pixel, and Cycles."""
 
 from __future__ import annotations
+
+from pathlib import Path
 
 import numpy as np
 import pytest
 from halation.nodes.lens.motion_blur import MotionBlur
-from scipy.ndimage import binary_dilation, correlate1d
+from scipy.ndimage import binary_dilation, binary_erosion, correlate1d
 from scipy.signal.windows import blackmanharris
 
 Array = np.ndarray
+
+DATA = Path(__file__).parents[1] / "data/blender_slow.npz"
 
 WIDTH, HEIGHT, SAMPLES, MOMENTS = 96, 72, 12, 24
 FILTER = blackmanharris(19)
@@ -47,3 +51,18 @@ def test_a_slow_ball_before_the_sky_has_no_dotted_ring(run, across, down):
     edge = binary_dilation((blurred > 0.0) & (blurred < 1.0), iterations=1)[..., 0]
     assert decibels(light, expected, np.ones_like(edge)) > 46.0
     assert decibels(light, expected, edge) > 37.3
+
+
+@pytest.mark.parametrize("pixels", [2, 6])
+def test_slow_motion_is_nearer_to_cycles_than_vector_blur_is(run, pixels):
+    """From the same layers, over all and in a band around the edge of the ball: tests/data/make_blender_slow.py."""
+    names = ("image", "cycles", "vector_blur", "vector", "depth")
+    image, cycles, vector_blur, vector, depth = (np.load(DATA)[f"{name}_{pixels}"].astype(np.float32) for name in names)
+    velocity = vector * np.float32([-1.0, 1.0, -1.0, 1.0])
+    inputs = {"image": np.dstack([image, np.ones_like(depth)]), "velocity": velocity, "depth": depth}
+    light = run(MotionBlur(), inputs)[..., :3]
+    moves = np.abs(vector).max(axis=2) > 0.1
+    band = binary_dilation(moves, iterations=3) & ~binary_erosion(moves, iterations=3)
+    for where, least in ((np.ones_like(moves), 45.0), (band, 39.0)):
+        own, other = (decibels(picture, cycles, where) for picture in (light, vector_blur))
+        assert own > least and own > other + 1.0
