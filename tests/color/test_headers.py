@@ -10,12 +10,13 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from film_scans import write_cineon
-from halation.color.file_space import CHROMATICITIES
+from halation.color.file_space import CHROMATICITIES, SRGB
 from halation.color.header_space import REC709, HeaderSpace, make_gamut_matrix
-from halation.color.management import get_color_manager, get_default_color_manager
+from halation.color.management import LINEAR_REC709, get_color_manager, get_default_color_manager
 from halation.errors import InputError
 from halation.media import read_info, read_layer
 from halation.media.color_spaces import describe_color_spaces, find_layer_spaces
+from halation.media.pictures.color_hints import read_color_hints
 from halation.nodes import ColorSettings, Kind
 from halation.resources.sandbox import UNRESTRICTED
 from house_config import AP1_TO_REC709, studio
@@ -224,6 +225,16 @@ def test_a_later_page_of_a_tiff_is_read_as_the_first_one(tmp_path, format):
         np.testing.assert_allclose(stored[..., 0], page[..., 0], atol=2e-3)
         array = read_layer(path, name, Kind.IMAGE, sandbox=UNRESTRICTED).array
         np.testing.assert_allclose(array[..., :1], ((stored + 0.055) / 1.055) ** 2.4, rtol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("format", "tag"), [("pnm", "Rec709"), ("tiff", SRGB), ("tiff", "sRGB"), ("png", SRGB), ("hdr", LINEAR_REC709)]
+)
+def test_a_tag_that_a_library_gives_to_all_files_of_a_format_says_nothing(format, tag):
+    """Which tags it gives, and to which pages, depends on the version of OpenImageIO."""
+    spec = oiio.ImageSpec(5, 4, 3, "uint8")
+    spec.attribute("oiio:ColorSpace", tag)
+    assert read_color_hints(spec, format, "uint8").tag == ""
 
 
 def test_a_name_that_the_author_wrote_is_refused(tmp_path, light):
