@@ -16,7 +16,7 @@ from halation.renderer import Renderer
 from halation.renderer.device import ProgramVariant
 from halation.renderer.opengl.shader_cache import DISABLING, MAX_RECORD_BYTES, ProgramRecord
 from halation.renderer.opengl.thread_context import ThreadContext, find_display
-from halation.resources.machine import available_cores
+from halation.resources.machine import available_cores, count_busy_threads
 
 SCRIPT = """
 import hashlib, json, sys, time
@@ -182,3 +182,9 @@ def test_a_machine_with_a_carried_cache_compiles_nothing(tmp_path: Path) -> None
     second = render(tmp_path / "second")
     assert second["count"] == 0 and second["pixels"] == first["pixels"]
     assert {Path(name).name for name in second["after"]} == {Path(name).name for name in first["after"]}
+
+
+def test_threads_that_work_are_counted() -> None:
+    assert count_busy_threads("no thread has this name") == 0
+    own = Path(f"/proc/self/task/{threading.get_native_id()}/comm")
+    assert not own.exists() or count_busy_threads(own.read_text().strip()) >= 1  # this one

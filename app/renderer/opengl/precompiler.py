@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from concurrent.futures import Future
 from contextlib import suppress
 
-from ...resources.machine import available_cores, has_memory_limit
+from ...resources.machine import available_cores, count_busy_threads, has_memory_limit
 from ..device import ProgramVariant
 from .shader_cache import ProgramRecord
 from .thread_context import ThreadContext, find_display
@@ -22,8 +22,11 @@ from .thread_context import ThreadContext, find_display
 MAX_THREADS = 8
 """A compiler takes 30 to 60 MB of memory (llvmpipe, Mesa 22.3), and few graphs have more slow programs. A choice."""
 
-CACHE_DELAY = 0.02
-"""Seconds that Mesa may take to write its cache: it does so on another thread."""
+CACHE_THREAD = "disk$0"
+"""How the name of the thread ends on which Mesa writes its cache: another one reads a program when this one rests."""
+
+CACHE_DELAY, MAX_CACHE_DELAY = 0.005, 1.0
+"""Seconds between two looks at that thread, and after which nobody waits for it. On a busy machine it takes 0.1 s."""
 
 
 class Precompiler:
@@ -74,10 +77,17 @@ class Precompiler:
             variant, future = job
             if context is not None and not self._is_ending():
                 context.compile(variant)
+                self._wait_for_cache()
                 self._record.add([variant.identity])
-            future.set_result(time.monotonic() + CACHE_DELAY)
+            future.set_result(time.monotonic())
         if context is not None:
             context.close()
+
+    def _wait_for_cache(self) -> None:
+        limit, looks_at_rest = time.monotonic() + MAX_CACHE_DELAY, 0
+        while looks_at_rest < 2 and time.monotonic() < limit:
+            time.sleep(CACHE_DELAY)
+            looks_at_rest = 0 if count_busy_threads(CACHE_THREAD) else looks_at_rest + 1
 
     def _take(self) -> tuple[ProgramVariant, Future[float]] | None:
         with self._lock:
