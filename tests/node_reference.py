@@ -115,6 +115,11 @@ write a node; [shaders.md](shaders.md) is about GLSL in a graph, which may use t
 
 A node is a class and a GLSL file. The class body declares sockets and values; import what it uses from
 `halation.nodes`, in Halation itself from `.._declare`. Sockets and values reach GLSL in declared order.
+
+A node whose first output is its input `image`, changed, at the same size, gets an input `mask` and the values `mix` and
+`invert_mask` by itself. They are no parameters of its GLSL: Halation applies them after the node. The three belong
+together: a node that declares one of these names itself gets none of them, because only the node knows what a mask of
+its own does, and `halation nodes --check` says so. Choose another name, such as `matte`, to keep the mask of Halation.
 """
 DRAWS = """\
 ## Drawing
@@ -122,6 +127,24 @@ DRAWS = """\
 `passes(self, draw)` of a `Filter` records what to draw and returns the last result, or a result for each output by
 name. Nothing runs yet. Functions are those of the node's own GLSL file and of
 the libraries that it includes.
+
+`self` has the values in working units: lengths (`px` and `height`) in pixels of the picture that is rendered, also in a
+proxy, and angles in radians. They are plain numbers, so `passes` may calculate with them, and choose how many draws it
+takes. Sockets such as `self.image` stand for pictures: pass them on. No value of a filter can be linked; what is linked
+comes through a socket, such as a `Number`.
+
+The arguments of `draw.point` are the parameters of the GLSL function, in its order and by its names: first the inputs,
+then the keywords. A keyword is a picture that was drawn before, a value or a number:
+
+```python
+def passes(self, draw: Draw) -> Drawn:
+    soft = draw.blur(self.image, sigma=2.0 * self.radius)
+    return draw.point("haze", self.image, self.depth, soft=soft, far=self.far, amount=0.5 * self.amount)
+```
+
+```glsl
+vec4 haze(vec4 image, float depth, vec4 soft, float far, float amount)
+```
 """
 GLSL = """\
 ## GLSL: names in every function

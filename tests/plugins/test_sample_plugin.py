@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -66,6 +68,30 @@ def test_a_graph_with_it_renders(site: Path) -> None:
     assert halation(site, "check", "--off", "unbound-input", preset).stdout.strip().endswith(": ok")
     result = halation(site, "render", preset, "-i", f"beauty={neon}", "-o", picture, "--scale", "0.25")
     assert result.returncode == 0 and picture.stat().st_size > 1000, result.stderr
+
+
+def list_commands(page: Path) -> list[list[str]]:
+    """The commands of a page, each as its words."""
+    blocks = re.findall(r"^```sh\n(.*?)^```", page.read_text("utf-8"), re.M | re.S)
+    return [words for block in blocks for line in block.splitlines() if (words := shlex.split(line, comments=True))]
+
+
+@pytest.mark.timeout(900)
+def test_every_command_of_its_pages_works(site: Path) -> None:
+    commands = [*list_commands(SAMPLE.parent / "plugins.md"), *list_commands(SAMPLE / "README.md")]
+    assert len(commands) >= 9
+    for words in map(list, {tuple(words): None for words in commands}):
+        match words:
+            case ["pip", "install", *packages]:
+                assert {*packages} <= {".", "pytest", "--editable"}  # the fixture installs it, without a network
+            case ["halation", "gallery", *options]:  # a picture of each node, which `tests/cli/test_gallery.py` draws
+                assert halation(site, "gallery", *options, "--help").returncode == 0
+            case ["halation", *rest]:
+                result = halation(site, *rest)
+                assert result.returncode == 0, (words, result.stdout, result.stderr)
+            case _:
+                assert words == ["python", "-m", "pytest", "tests"]  # see `test_its_own_tests_pass`
+    assert (site.parent / "dream.png").stat().st_size > 1000
 
 
 def test_the_editor_finds_it(site: Path) -> None:
