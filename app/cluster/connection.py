@@ -11,6 +11,7 @@ import time
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, cast
 from urllib.parse import urlsplit
 
@@ -65,10 +66,8 @@ def open_client(address: str, job: RenderJob | None = None) -> Iterator[Client]:
 @contextmanager
 def _connect(address: str, count: int) -> Iterator[Client]:
     """A connection to a scheduler; with a `count` to one here, with so many workers."""
-    try:
-        import distributed
-    except ImportError:
-        raise UsageError("--cluster needs Dask: pip install 'halation[cluster]'") from None
+    if find_spec("distributed") is None:
+        raise UsageError("--cluster needs Dask: pip install 'halation[cluster]'")
     # Dask writes pages about what it tries again; the user gets one sentence for it.
     for name in ("distributed", "distributed.client", "distributed.scheduler", "distributed.worker", "tornado"):
         logging.getLogger(name).setLevel(logging.CRITICAL)
@@ -76,9 +75,7 @@ def _connect(address: str, count: int) -> Iterator[Client]:
     with contextlib.ExitStack() as stack:
         target: str | LocalCluster = stack.enter_context(_start_cluster(count)) if count else address
         try:
-            if not count:
-                _await_listener(address)
-            client = distributed.Client(target, timeout=ANSWER_SECONDS, set_as_default=False)
+            client = _open_client(target)
         except (OSError, TimeoutError, ValueError, TypeError) as fault:
             reason = "" if isinstance(fault, OSError | TimeoutError) else f" ({fault})"
             raise RenderError(
@@ -90,6 +87,25 @@ def _connect(address: str, count: int) -> Iterator[Client]:
         finally:
             with contextlib.suppress(Exception):  # whatever Dask says of a connection that is gone anyway
                 client.close(timeout=1)
+
+
+def _open_client(target: str | LocalCluster) -> Client:
+    """A client of a cluster, tried again where a connection is closed at once, as by a scheduler that just starts.
+
+    Raises OSError, TimeoutError, and what Dask raises for what is no address.
+    """
+    import distributed
+
+    deadline = time.monotonic() + CONNECT_SECONDS
+    while True:
+        try:
+            if isinstance(target, str):
+                _await_listener(target)
+            return distributed.Client(target, timeout=ANSWER_SECONDS, set_as_default=False)
+        except OSError:
+            if time.monotonic() > deadline:
+                raise
+        time.sleep(_RETRY_INTERVAL)
 
 
 def _await_listener(address: str) -> None:
