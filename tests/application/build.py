@@ -18,6 +18,7 @@ import subprocess
 import sys
 import sysconfig
 import tarfile
+from collections.abc import Mapping
 from fnmatch import fnmatch
 from pathlib import Path
 from typing import IO, cast
@@ -52,9 +53,16 @@ def build_folder(python: Path, folder: Path, commit_time: int) -> Path:
     if outcome.returncode:
         sys.exit(f"release: building the application failed\n{outcome.stdout}{outcome.stderr}")
     application = folder / "halation"
+    compile_modules(python, application / "lib", environment)
     remove_libraries(application / "lib")
     link_copies(application)
     return application
+
+
+def compile_modules(python: Path, libraries: Path, environment: Mapping[str, str]) -> None:
+    """Compile the modules that stay files, without dates: the program of the folder keeps nothing that it compiles."""
+    options = ("-q", "--invalidation-mode", "unchecked-hash", "-s", libraries, "-p", "lib")
+    subprocess.run([python, "-m", "compileall", *options, libraries / "halation"], env=environment, check=True)
 
 
 def list_notices(application: Path) -> dict[str, str]:
