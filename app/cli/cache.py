@@ -21,10 +21,11 @@ _Import = Annotated[
 
 
 def cache(export_path: _Export = None, import_path: _Import = None, as_json: AsJson = False) -> int:
-    """Save or restore the programs that Mesa's software rasterizer has compiled.
+    """Save or restore compiled shader programs.
 
-    With a full cache, first frames take half the time or less. A file fits the driver and the processor on which it was
-    made. It holds machine code: import only what you have exported yourself.
+    They are those of Mesa's software rasterizer. With a full cache, first frames take half the time or less. A file
+    fits the driver and the processor on which it was made. It holds machine code: import only what you have exported
+    yourself.
     """
     from ..renderer import open_device
     from ..renderer.opengl.cache_archive import export_cache, import_cache
