@@ -1,6 +1,6 @@
 from collections.abc import Mapping
 from math import ceil, log2
-from typing import Annotated
+from typing import Annotated, Any
 
 from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, OutputSocket, ProxyNote, Slider, Vector
 from ..light._coverage import COVERAGE_REACH
@@ -89,7 +89,7 @@ class GeometryEdges(Filter):
             draw(f"geometry_edges_{side}", seams=seams, edge="black", overlap=_FOLLOWED, result=Vector(width=3))
             for side in ("right", "below")
         )
-        lines = {"right": right, "below": below}
+        lines: dict[str, Any] = {"right": right, "below": below}
         runs = draw("geometry_edges_runs", seams=seams, **lines, edge="black", overlap=1, result=Vector(width=3))
         if self.width > _SEAM:
             edges = self._widen(draw, runs, lines)
@@ -126,7 +126,7 @@ class GeometryEdges(Filter):
             deep=deep,
         )
 
-    def _widen(self, draw: Draw, runs: Drawn, lines: Mapping[str, Drawn]) -> Drawn:
+    def _widen(self, draw: Draw, runs: Drawn, lines: Mapping[str, Any]) -> Drawn:
         """What lies within half the width of a line: the nearest seam is found first, in columns and then in a row."""
         reach = ceil(self.width / 2.0) + _NEAR
         columns = draw.point("geometry_edges_seeds", result=Vector(width=2), runs=runs)

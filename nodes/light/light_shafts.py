@@ -1,6 +1,6 @@
 import math
 from collections.abc import Mapping
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from .._declare import (
     RGBA,
@@ -133,6 +133,8 @@ class LightShafts(Filter):
         """Mixes the haze of both sides along contours: depth is not filtered, so that haze has jagged edges."""
         three = Vector(width=3)
         seams = draw("light_shafts_seams", surfaces=all_surfaces, result=three)
-        lines = {side: draw(f"light_shafts_{side}", seams=seams, edge="black", result=three) for side in _SIDES}
+        lines: dict[str, Any] = {
+            side: draw(f"light_shafts_{side}", seams=seams, edge="black", result=three) for side in _SIDES
+        }
         runs = draw("light_shafts_runs", seams=seams, **lines, edge="black", result=three)
         return draw("light_shafts_smooth", haze=haze, runs=runs, **lines, edge="black", result=Field())
