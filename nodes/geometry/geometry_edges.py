@@ -73,7 +73,7 @@ class GeometryEdges(Filter):
         """Find seams between pixels, the line through each staircase of seams, and the coverage of a band around it."""
         field = Field()
         normal = self._separate(draw) if draw.is_linked(self.normal) else self.normal
-        layers = {"depth": self.depth, "normal": normal, "ids": self.ids}
+        layers: dict[str, Any] = {"depth": self.depth, "normal": normal, "ids": self.ids}
         differences = draw("geometry_edges_found", **layers, overlap=1, result=Vector(width=3))
         seams = draw(
             "geometry_edges_seams",
