@@ -29,7 +29,7 @@ def thumbnail(
     Other files are read only from the folder of the graph and below, because file managers make thumbnails of whatever
     lies in a folder.
     """
-    sandbox = Sandbox(file.absolute().parent)
+    sandbox = Sandbox(str(file.absolute().parent))
     if file.suffix.lower() == ".json":
         return run_session(lambda: _write_graph(file, picture, size, sandbox), _SECONDS, False)
     from ..media.pictures.thumbnail import read_thumbnail, save_thumbnail

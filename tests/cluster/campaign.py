@@ -96,6 +96,7 @@ def try_once(folder: Path, number: int, draw: random.Random) -> tuple[str, list[
     farm_folder = Path(tempfile.mkdtemp(prefix="farm", dir=folder))
     harmed = HarmedFarm(farm_folder, draw)
     harms: list[str] = []
+    process: subprocess.Popen[str] | None = None
     try:
         if draw.random() < 0.5:
             harmed.start_full_worker()
@@ -111,7 +112,8 @@ def try_once(folder: Path, number: int, draw: random.Random) -> tuple[str, list[
                 harmed.harm(harms[-1])
         _, err = process.communicate(timeout=240)
     except subprocess.TimeoutExpired:
-        process.kill()
+        if process is not None:
+            process.kill()
         return "it does not end", harms
     finally:
         harmed.farm.stop()
