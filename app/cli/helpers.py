@@ -19,9 +19,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import HalationError, rebuild_fault
+from ..resources.heartbeat import Watchdog
 from ..resources.interrupts import delay_interrupts
 from .outcome import print_note
-from .watchdog import CHECK_INTERVAL, Watchdog
+from .watchdog import CHECK_INTERVAL
 
 if TYPE_CHECKING:
     from ..renderer.jobs.render_job import RenderJob

@@ -97,7 +97,7 @@ def test(
         return _run_and_report(cases, options, jobs, stop_early, reports, supervisor, share)
 
     if cluster:
-        return _run_on_cluster(cluster, jobs, lambda share: work(None, share))
+        return _run_on_cluster(cluster, jobs, timeout, lambda share: work(None, share))
     if jobs == 1:
         return run_session(work, timeout, as_json)
     import tempfile
@@ -106,7 +106,7 @@ def test(
         return work(PoolWatchdog(Path(folder), timeout))
 
 
-def _run_on_cluster(address: str, jobs: int, work: Callable[[CaseSharing], int]) -> int:
+def _run_on_cluster(address: str, jobs: int, timeout: float, work: Callable[[CaseSharing], int]) -> int:
     """Run cases on the workers of a cluster."""
     from ..cluster.connection import open_client
     from ..regression.cluster_cases import share_cases
@@ -114,7 +114,7 @@ def _run_on_cluster(address: str, jobs: int, work: Callable[[CaseSharing], int])
     if jobs > 1:
         raise UsageError("--cluster and -j: give one of them; --cluster local:4 has four workers on this machine")
     with open_client(address) as client:
-        return work(lambda cases, options: share_cases(client, address, cases, options))
+        return work(lambda cases, options: share_cases(client, address, cases, options, timeout))
 
 
 class _ReportFiles(NamedTuple):

@@ -20,9 +20,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..errors import DeviceError, HalationError, RenderError, describe_owner
-from ..resources.machine import has_memory_limit, machine_memory, resident_memory
-from .outcome import flush_output, report_failure
+from ..errors import DeviceError
+from ..resources.heartbeat import BEACON_FILE, Watchdog, explain_memory_limit, name_signal
+from .outcome import flush_output, print_note, report_failure
 from .signals import end_with_parent_thread, ignore_interrupts, relay_requests
 
 if TYPE_CHECKING:
@@ -39,9 +39,6 @@ _LINGERING = 0.25
 """Seconds for which the system may still list a thread that has ended: measured, more than 20 ms in one of a thousand
 where twelve processes share four processors."""
 
-OWN_MEMORY = 256 << 20
-"""Bytes that a driver may take for itself when it compiles, besides the limit: Mesa takes 120 MiB at first."""
-
 Timeout = Annotated[
     float,
     typer.Option(
@@ -51,60 +48,6 @@ Timeout = Annotated[
         help="The longest that one pass of a code node may take; 0 for no limit.",
     ),
 ]
-
-
-class Watchdog:
-    """Watches the heartbeat of one process.
-
-    `timeout` is how many seconds code may run, 0 for no limit; `memory` how many bytes the process may grow by then.
-    With `tries_first` it tries programs in a third process, as it would unwatched: more than one render ends with it.
-    """
-
-    def __init__(self, file: Path, timeout: float, memory: int = 0, tries_first: bool = False) -> None:
-        self._file, self._timeout, self._tries_first = file, timeout, tries_first
-        self._memory = (memory or machine_memory() / 2) + OWN_MEMORY
-        self._beat, self._since, self._idle_memory = "", time.monotonic(), 0
-        file.touch()
-
-    @property
-    def environment(self) -> dict[str, str]:
-        """The environment variables that tell the process where to write its heartbeat."""
-        from ..renderer.execution.progress_beacon import BEACON_FILE, BEACON_TRIALS
-
-        return {BEACON_FILE: str(self._file), BEACON_TRIALS: "1" if self._tries_first else ""}
-
-    def check(self, process: int) -> DeviceError | None:
-        """The error to raise if code has run for too long, or takes too much memory, else None."""
-        heartbeat, memory = self._file.read_text(encoding="utf-8"), resident_memory(process)
-        if not heartbeat:
-            self._idle_memory = memory
-        if heartbeat != self._beat:
-            self._beat, self._since = heartbeat, time.monotonic()
-        elif heartbeat and 0.0 < self._timeout < time.monotonic() - self._since:
-            return self._fault(
-                f"has not ended after {self._timeout:g} seconds, so the render was stopped: "
-                "look for an endless loop, make the code smaller, or raise --timeout"
-            )
-        if heartbeat and memory - self._idle_memory > self._memory:
-            return self._fault(
-                f"takes more than {self._memory / 2**30:.1f} GiB of memory, so the render was stopped: "
-                "make the code smaller, or raise --memory"
-            )
-        return None
-
-    def explain_signal(self, number: int) -> HalationError:
-        """The error to raise after a signal has ended the process."""
-        name = _name_signal(number)
-        self._beat = self._file.read_text(encoding="utf-8")
-        if has_memory_limit():
-            return _explain_memory_limit(name)
-        if self._beat:
-            return self._fault(f"has ended the process ({name}) while it compiled or ran: make the code simpler")
-        return RenderError(f"the render was ended from outside ({name})")
-
-    def _fault(self, sentence: str) -> DeviceError:
-        nodes = self._beat.partition(" ")[2]
-        return DeviceError(f"{describe_owner(nodes)}: its code {sentence}", node=nodes)
 
 
 class PoolWatchdog:
@@ -132,15 +75,12 @@ class PoolWatchdog:
 def needs_watchdog(graph: Graph) -> bool:
     """True if the graph has code nodes, also in groups, and no other process watches this one."""
     from ..graph.custom_code import has_code
-    from ..renderer.execution.progress_beacon import BEACON_FILE
 
     return not os.environ.get(BEACON_FILE) and has_code(graph)
 
 
 def end_with_watchdog() -> None:
     """Have the system end this process with the one that watches it, if one does: nothing else ends a stuck device."""
-    from ..renderer.execution.progress_beacon import BEACON_FILE
-
     if os.environ.get(BEACON_FILE):
         end_with_parent_thread()
 
@@ -162,8 +102,6 @@ def can_fork() -> bool:
 
 def run_session(work: Callable[[], int], timeout: float, as_json: bool) -> int:
     """Do work that renders many times in a copy of this process that this one watches, where there can be a copy."""
-    from ..renderer.execution.progress_beacon import BEACON_FILE
-
     if os.environ.get(BEACON_FILE) or not can_fork():
         return work()
     return run_forked(work, timeout, 0, as_json, tries_first=True)
@@ -179,6 +117,20 @@ def run_watched(
     if any(map(needs_watchdog, graphs)) and can_fork():
         return run_forked(work, timeout, memory, as_json)
     return work()
+
+
+def run_service(work: Callable[[], int], timeout: float, as_json: bool) -> int:
+    """As `run_session`, for work that serves clients without an end: after code that was stopped it begins again.
+
+    The client whose code it was loses its connection, and so do those that are connected at that time.
+    """
+    if os.environ.get(BEACON_FILE) or not can_fork():
+        return work()
+    while True:
+        try:
+            return run_forked(work, timeout, 0, as_json, tries_first=True)
+        except DeviceError as fault:
+            print_note(f"{fault}; the server begins again")
 
 
 def run_forked(
@@ -243,22 +195,8 @@ def run_limited(work: Callable[[], int]) -> int:
     if code < 0 and requests:
         raise KeyboardInterrupt
     if code < 0:
-        raise _explain_memory_limit(_name_signal(-code))
+        raise explain_memory_limit(name_signal(-code))
     return code
-
-
-def _name_signal(number: int) -> str:
-    try:
-        return signal.Signals(number).name
-    except ValueError:
-        return f"signal {number}"
-
-
-def _explain_memory_limit(name: str) -> RenderError:
-    return RenderError(
-        f"the driver ended the process ({name}), as drivers do without enough memory: allow more (ulimit -v), "
-        "or render a smaller picture with --scale or --size"
-    )
 
 
 def rerun_watched(context: typer.Context, path: Path, graph: Graph, timeout: float) -> int | None:

@@ -220,7 +220,7 @@ class FrameCampaign:
         if report.death:
             is_stage = assignment.stage is not None and assignment.stage.kind != "frames"
             lost = self._frames.put_suspects(assignment.frames if is_stage else missing, assignment, report.worker)
-            self._give_up(lost, f"{report.death} each time, on {MAX_ATTEMPTS} tries: the last was on {report.worker}")
+            self._give_up(lost, f"on {MAX_ATTEMPTS} tries, the last on {report.worker}: {report.death}")
             return
         for frame in missing:
             self._judge_fault(frame, report, assignment)

@@ -13,16 +13,19 @@ import os
 import queue
 import signal
 import subprocess
+import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
 from msgspec import Struct, convert, field
 
 from ..renderer.jobs.render_job import RenderJob, worker_command
+from ..resources.heartbeat import Watchdog
 from ..resources.machine import available_cores, resident_memory
 from .chunk import ChunkReport, FrameChunk, StageReport
 
@@ -44,6 +47,16 @@ def find_kind(job: RenderJob) -> ProcessKind:
     return job.deterministic, job.form or "", job.memory, job.sandbox.root
 
 
+class ProcessLimits(Struct, frozen=True):
+    """What a process may take for a line: `seconds` for code of a graph, 0 for any time; `memory` bytes for such code,
+    0 for half of the machine's; and `resident` bytes in all, 0 for any number.
+    """
+
+    seconds: float
+    memory: int = 0
+    resident: int = 0
+
+
 class ProcessAnswer(Struct, frozen=True):
     """What a process has answered, or why it has not."""
 
@@ -56,7 +69,10 @@ class RenderProcess:
     """A process that renders chunks. `threads` are those of its software rasterizer."""
 
     def __init__(self, threads: int) -> None:
-        environment = {**os.environ, "PYTHONIOENCODING": "utf-8"}
+        self._folder = tempfile.TemporaryDirectory(prefix="halation-")
+        self._heartbeat = Path(self._folder.name, "heartbeat")
+        beacon = Watchdog(self._heartbeat, 0.0, tries_first=True).environment
+        environment = {**os.environ, **beacon, "PYTHONIOENCODING": "utf-8"}
         for name in ("LP_NUM_THREADS", "OPENIMAGEIO_THREADS"):
             environment.setdefault(name, str(threads))
         self._process = subprocess.Popen(
@@ -83,6 +99,7 @@ class RenderProcess:
         memory_limit: int,
     ) -> ChunkReport:
         """Render a chunk and report each frame; `memory_limit` is how many bytes the process may take, 0 for any."""
+        limits = ProcessLimits(chunk.job.timeout, chunk.job.memory, memory_limit)
         seconds: dict[int, float] = {}
         kept: list[int] = []
 
@@ -91,7 +108,7 @@ class RenderProcess:
             kept.extend([event["frame"]] * bool(event["kept"]))
             report_frame(event)
 
-        answer = self.ask(chunk.to_json(), note_frame, is_cancelled, memory_limit)
+        answer = self.ask(chunk.to_json(), note_frame, is_cancelled, limits)
         faults = {int(frame): fault for frame, fault in answer.facts.get("faults", {}).items()}
         costs, refusal = answer.facts.get("costs", {}), answer.facts.get("refusal", "")
         stage = convert(answer.facts["stage"], StageReport, strict=False) if "stage" in answer.facts else None
@@ -102,10 +119,11 @@ class RenderProcess:
         line: str,
         note_frame: Callable[[dict[str, Any]], None],
         is_cancelled: Callable[[], bool],
-        memory_limit: int,
+        limits: ProcessLimits,
     ) -> ProcessAnswer:
         """Send a line of JSON and wait for the answer, which lines about frames may precede."""
         assert self._process.stdin is not None
+        watchdog = Watchdog(self._heartbeat, limits.seconds, limits.memory, tries_first=True)
         with contextlib.suppress(OSError):
             self._process.stdin.write(f"{line}\n")
             self._process.stdin.flush()
@@ -117,9 +135,14 @@ class RenderProcess:
                 if is_cancelled():
                     self.stop()
                     return ProcessAnswer(is_cancelled=True)
-                if 0 < memory_limit < resident_memory(self._process.pid):
+                if fault := watchdog.check(self._process.pid):
                     self.stop()
-                    return ProcessAnswer(death=f"it takes more than the {memory_limit / 2**30:.1f} GiB of its worker")
+                    return ProcessAnswer(death=str(fault))
+                if 0 < limits.resident < resident_memory(self._process.pid):
+                    self.stop()
+                    return ProcessAnswer(
+                        death=f"it takes more than the {limits.resident / 2**30:.1f} GiB of its worker"
+                    )
             if answer_line == "":
                 continue
             if answer_line is None:
@@ -147,6 +170,7 @@ class RenderProcess:
         if self.is_alive:
             self._process.kill()
         self._process.wait()
+        self._folder.cleanup()
 
     def _read_line(self) -> str | None:
         """The next line; "" if none comes for a moment, None after the last one."""
@@ -187,9 +211,11 @@ class RenderProcessPool:
         except BaseException:
             process.stop()
             raise
-        if process.is_alive:
-            with self._lock:
-                self._idle.append((kind, process))
+        if not process.is_alive:
+            process.stop()
+            return
+        with self._lock:
+            self._idle.append((kind, process))
 
     def warm(self, job: RenderJob, count: int) -> None:
         """Start processes before there are chunks for them: they load what they need meanwhile."""
@@ -209,6 +235,9 @@ class RenderProcessPool:
 
     def _take(self, kind: ProcessKind) -> RenderProcess | None:
         with self._lock:
+            for _, process in self._idle:
+                if not process.is_alive:
+                    process.stop()
             self._idle = [(other, process) for other, process in self._idle if process.is_alive]
             place = next((place for place, (other, _) in enumerate(self._idle) if other == kind), None)
             return None if place is None else self._idle.pop(place)[1]

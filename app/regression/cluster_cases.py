@@ -13,7 +13,7 @@ from uuid import uuid4
 import msgspec
 
 from ..cluster.connection import iterate_finished
-from ..cluster.render_process import share_cores
+from ..cluster.render_process import ProcessLimits, share_cores
 from ..cluster.worker_task import find_worker, make_cancel_check, open_pool, read_memory_limit, read_version
 from ..cluster.workers import WorkerRoster
 from ..errors import RenderError
@@ -30,9 +30,12 @@ _TRIES = 3
 
 
 def share_cases(
-    client: Client, address: str, cases: Sequence[Case], options: RunOptions
+    client: Client, address: str, cases: Sequence[Case], options: RunOptions, timeout: float
 ) -> Generator[CaseResult, None, None]:
-    """Run cases on the workers of a cluster; the results as they come. Raises RenderError if no worker can."""
+    """Run cases on the workers of a cluster; the results as they come. Raises RenderError if no worker can.
+
+    `timeout` is how many seconds a pass of a code node may take, 0 for no limit.
+    """
     roster = WorkerRoster(wants_gpu=False)
     roster.update(cast("Mapping[str, Mapping[str, Any]]", client.scheduler_info(n_workers=-1)["workers"]))
     versions = client.run(read_version, on_error="return")
@@ -41,7 +44,7 @@ def share_cases(
         reasons = "; ".join(f"{worker}: {reason}" for worker, reason in roster.refusals.items())
         raise RenderError(f"--cluster {address}: no worker can run the cases: {reasons or 'there is none'}")
     slots, places = roster.count_slots_by_machine(), roster.choose(())
-    texts = [_write_case(_make_absolute(case), options, slots) for case in cases]
+    texts = [_write_case(_make_absolute(case), options, slots, timeout) for case in cases]
     names = [f"halation-case-{uuid4().hex[:8]}-{number}" for number in range(len(cases))]
     futures = client.map(run_suite_case, texts, key=names, pure=False, workers=places)
     cases_by_name = dict(zip(names, cases, strict=True))
@@ -60,8 +63,8 @@ def run_suite_case(text: str) -> str:
     death = ""
     for _ in range(_TRIES):
         with open_pool().lend_process(kind, share_cores(facts["slots"], worker.address)) as process:
-            check, limit = make_cancel_check(worker), read_memory_limit(worker)
-            answer = process.ask(text, lambda event: None, check, limit)
+            limits = ProcessLimits(facts["timeout"], resident=read_memory_limit(worker))
+            answer = process.ask(text, lambda event: None, make_cancel_check(worker), limits)
         death = answer.death
         if not death:
             return json.dumps(answer.facts)
@@ -76,9 +79,9 @@ def run_case_text(line: str) -> dict[str, Any]:
     return cast("dict[str, Any]", msgspec.to_builtins(run_in_worker(case, options), enc_hook=str))
 
 
-def _write_case(case: Case, options: RunOptions, slots: Mapping[str, int]) -> str:
+def _write_case(case: Case, options: RunOptions, slots: Mapping[str, int], timeout: float) -> str:
     options = replace(options, out=None if options.out is None else options.out.absolute())
-    return json.dumps({"case": _plain(case), "options": _plain(options), "slots": slots})
+    return json.dumps({"case": _plain(case), "options": _plain(options), "slots": slots, "timeout": timeout})
 
 
 def _plain(item: object) -> object:
@@ -88,7 +91,7 @@ def _plain(item: object) -> object:
 def _read_result(case: Case, text: str) -> CaseResult:
     facts = json.loads(text)
     if "death" in facts:
-        return CaseResult(Outcome(case, "failed", f"{facts['death']}, {_TRIES} times"), "", True)
+        return CaseResult(Outcome(case, "failed", f"on {_TRIES} tries: {facts['death']}"), "", True)
     loaded = msgspec.convert(facts, CaseResult, dec_hook=_read_path)
     return replace(loaded, outcome=replace(loaded.outcome, case=case))
 

@@ -17,7 +17,7 @@ from typing import Protocol
 
 from .. import renderer as engine
 from ..errors import RenderError
-from ..renderer.execution.progress_beacon import BEACON_FILE, BEACON_TRIALS
+from ..resources.heartbeat import BEACON_FILE, BEACON_TRIALS
 from ..resources.sandbox import Sandbox
 from ..version import VERSION
 from .case_runner import RunOptions, run_case

@@ -181,6 +181,28 @@ def test_a_request_that_takes_too_long_is_ended(tmp_path, graphs):
 
 
 @POSIX
+@pytest.mark.skipif(sys.platform != "linux", reason="fork and SIGKILL")
+def test_a_server_begins_again_after_code_that_does_not_end(tmp_path, graphs):
+    """It is the code of one client; others connect again and go on."""
+    loops = "for (int i = 0; i < 100000; i++) for (int j = 0; j < 100000; j++)"
+    code = ["vec4 f(vec4 image) {", f"float x = image.r; {loops} x = fract(sin(x + i) * j);", "return image * x;", "}"]
+    nodes = {"light": {"type": "exposure"}, "slow": {"type": "glsl", "code": code}}
+    slow = {"nodes": nodes, "links": {"slow.image": "light.out", "outputs.image": "slow.out"}}
+    with started(tmp_path, "--timeout", "1") as (path, process):
+        assert process.stderr is not None
+        for _ in range(2):
+            hostile = Wire(path)
+            hostile.send({"do": "render", "id": 1, "graph": str(graphs(**slow)), "size": [512, 512]})
+            assert hostile.replies.readline() == b""
+            hostile.close()
+            lines = [process.stderr.readline(), process.stderr.readline()]
+            assert "its code has not ended after 1 seconds" in lines[0] and "the server begins again" in lines[0], lines
+            assert lines[1].endswith(f"ready at {path}\n"), lines
+            with hal.connect(path) as connection:
+                assert connection.render(graphs(**BLUR))["image"].shape == (32, 48, 4)
+
+
+@POSIX
 def test_a_request_is_cancelled(wire, graphs):
     path = str(graphs(**ENDLESS))
     wire.send(

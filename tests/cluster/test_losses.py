@@ -97,10 +97,34 @@ def test_a_frame_that_ends_its_process_each_time_is_named_and_others_are_finishe
     (shot / "shot.json").write_text(json.dumps(graph))
     ending = halation(*render_words(farm, "660-670"), "--json")
     assert ending.code == 1
-    assert "frame 666: its process was ended by SIGKILL each time, on 3 tries" in ending.err, ending.err
+    assert re.search(r"frame 666: on 3 tries, the last on \S+: its process was ended by SIGKILL", ending.err), (
+        ending.err
+    )
     report = json.loads(ending.out)
     assert list(report["failed"]) == ["666"]
     assert list_written(shot) == [frame for frame in range(660, 671) if frame != 666]
+
+
+def test_code_that_does_not_end_is_stopped_at_the_time_limit(halation, shot, farm):
+    """In frames and in cases of a suite; the worker goes on."""
+    loops = "for (int i = 0; i < 100000; i++) for (int j = 0; j < 100000; j++)"
+    endless = f"float x = image.r; {loops} x = fract(sin(x + i) * j);"
+    graph = {
+        "halation": 1,
+        "inputs": {"plate": {"type": "Image", "default": [0.5, 0.5, 0.5, 1.0]}},
+        "nodes": {"slow": {"type": "glsl", "code": ["vec4 f(vec4 image) {", endless, "return image * x;", "}"]}},
+        "links": {"slow.image": "inputs.plate", "outputs.image": "slow.out"},
+        "outputs": {"image": {"type": "Image"}},
+        "settings": {"size": [512, 512]},
+    }
+    (shot / "endless.json").write_text(json.dumps(graph))
+    ending = halation("render", "endless.json", "-o", "x.exr", "--timeout", "1", "--cluster", farm.address)
+    assert ending.code == 1 and not (shot / "x.exr").exists()
+    assert "node 'slow': its code has not ended after 1 seconds" in ending.err, ending.err
+    (shot / "e.suite.toml").write_text('[cases.endless]\ngraph = "endless.json"\ngolden = ""\n')
+    ending = halation("test", "e.suite.toml", "--timeout", "1", "--cluster", farm.address, "--json")
+    assert ending.code == 1 and "its code has not ended after 1 seconds" in ending.out, ending.out
+    assert halation(*render_words(farm, "1")).code == 0
 
 
 def test_machines_that_cannot_render_the_same_are_refused_with_the_reason(halation, shot, make_farm, tmp_path):
@@ -152,7 +176,7 @@ def test_a_frame_that_needs_more_memory_than_its_worker_has_is_named_and_the_wor
     farm.start_worker("--memory-limit", "900MiB", **customize(tmp_path / "hungry", HUNGRY))
     ending = halation(*render_words(farm))
     assert ending.code == 1
-    assert "frame 3: it takes more than the 0.9 GiB of its worker each time, on 3 tries" in ending.err, ending.err
+    assert re.search(r"frame 3: on 3 tries, the last on \S+: it takes more than the 0.9 GiB of its worker", ending.err)
     assert list_written(shot) == [frame for frame in FRAMES if frame != 3]
     os.killpg(farm.workers[0], 0)  # it is there
 

@@ -52,7 +52,7 @@ OPENERS = {
     "cli/demo.py": "samples of Halation, copied to where the user says",
     "cli/git_setup.py": "the configuration of git",
     "cli/outcome.py": "the null device, in place of a stream that is closed",
-    "cli/watchdog.py": "the heartbeat, in a temporary folder of ours",
+    "resources/heartbeat.py": "the heartbeat, in a temporary folder of ours",
     "authoring/preferences.py": "the editor's own file",
     "authoring/preset_versions.py": "presets in folders of the user",
     "resources/user_folders.py": "the editor's own file",

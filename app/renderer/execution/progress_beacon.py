@@ -8,12 +8,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-BEACON_FILE = "HALATION_HEARTBEAT"
-"""The environment variable with the path of the file."""
-
-
-BEACON_TRIALS = "HALATION_TRIALS"
-"""The environment variable that is not empty where a watched process tries programs in another one all the same."""
+from ...resources.heartbeat import BEACON_FILE, BEACON_TRIALS
 
 
 class ProgressBeacon:
