@@ -41,7 +41,6 @@ ANYWHERE = frozenset(
         "corner_pin",
         "denoise",
         "dilate_erode",
-        "directional_occlusion",
         "displace",
         "distance_field",
         "edge_extend",
