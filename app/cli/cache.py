@@ -34,11 +34,7 @@ def cache(export_path: _Export = None, import_path: _Import = None, as_json: AsJ
     if path is None or (export_path and import_path):
         raise UsageError("give either --export FILE.zip or --import FILE.zip")
     sandbox = read_process_sandbox()
-    device = open_device(sandbox=sandbox)
-    try:
-        count = (export_cache if export_path else import_cache)(path, device, sandbox=sandbox)
-    finally:
-        device.close()
+    count = (export_cache if export_path else import_cache)(path, open_device(sandbox=sandbox), sandbox=sandbox)
     if as_json:
         print_json({"exported" if export_path else "imported": count, "path": str(path)})
     else:

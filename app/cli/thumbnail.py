@@ -50,11 +50,8 @@ def _write_graph(file: Path, picture: Path, size: int, sandbox: Sandbox) -> int:
 
     replies: list[Mapping[str, Any]] = []
     renderer = Renderer(open_device(sandbox=sandbox), sandbox=sandbox)
-    try:
-        service = RenderService(renderer, sandbox, ServiceLimits(_SECONDS, _PIXELS))
-        service.answer(ServiceClient(replies.append), ServiceRequest("thumbnail", graph=str(file), width=size))
-    finally:
-        renderer.close()
+    service = RenderService(renderer, sandbox, ServiceLimits(_SECONDS, _PIXELS))
+    service.answer(ServiceClient(replies.append), ServiceRequest("thumbnail", graph=str(file), width=size))
     (reply,) = replies
     if error := reply.get("error"):
         raise rebuild_fault(error)

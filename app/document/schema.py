@@ -75,10 +75,10 @@ _DOCS = {
 
 def schema(types: Mapping[str, type[Node]]) -> Schema:
     """The schema of a graph file, for these node types by id."""
-    node_schemas = {f"node {id}": _node(kind) for id, kind in sorted(types.items())}
+    node_schemas = {f"node.{id}": _node(kind) for id, kind in sorted(types.items())}
     languages = sorted(get_args(Language))
     code = _either(_record(records.CodeRecord), code="array", file="name")
-    homes = {**{id: f"node {id}" for id in sorted(types)}, "group": "group", **dict.fromkeys(languages, "code")}
+    homes = {**{id: f"node.{id}" for id in sorted(types)}, "group": "group", **dict.fromkeys(languages, "code")}
     type_name: Schema = {"description": "What it does.", "anyOf": [{"enum": list(homes)}, {"type": "string"}]}
     return {
         "$schema": DIALECT,

@@ -191,7 +191,7 @@ def test_limits_are_those_of_check(name, value) -> None:
 
 def test_every_value_of_every_node_is_there_with_its_words() -> None:
     for id, node in catalogue().items():
-        node_schema = SCHEMA["$defs"][f"node {id}"]
+        node_schema = SCHEMA["$defs"][f"node.{id}"]
         values = (node_schema.get("then") or node_schema)["properties"]["values"]["properties"]
         assert [*values] == [*node.values]
         assert all(value.doc in values[name].get("description", "") for name, value in node.values.items())

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import random
+import subprocess
+import sys
 from itertools import pairwise
 
 import bidi
 import pytest
-import uharfbuzz as hb
 from halation.errors import HalationError, InputError
 from halation.media.lettering.bidi_runs import find_levels, split_runs
 from halation.media.lettering.fonts import FONTS, load_font
+from halation.media.lettering.harfbuzz import hb
 from halation.media.lettering.shaping import shape_run
 from halation.media.lettering.typesetting import typeset
 from halation.nodes import TextBlock, Typeface
@@ -139,3 +141,35 @@ def test_other_files_are_no_fonts(tmp_path, content, words):
     font.write_bytes(content)
     with pytest.raises(InputError, match=f"f.ttf: .*{words}"):
         load_font(Typeface(path=str(font)), UNRESTRICTED)
+
+
+ALONE = """
+from halation.media.lettering.fonts import load_font
+from halation.media.lettering.shaping import trace_glyph
+from halation.nodes import Typeface
+from halation.resources.sandbox import UNRESTRICTED
+for weight in (400.0, 700.0):
+    font = load_font(Typeface(weight=weight), UNRESTRICTED)
+    print([trace_glyph(font, glyph) for glyph in range(200)])
+"""
+FOREIGN = """
+import ctypes, OpenImageIO
+OpenImageIO.ImageBufAlgo.text_size("abc")
+try:
+    ctypes.CDLL("libharfbuzz.so.0", mode=ctypes.RTLD_GLOBAL)
+except OSError:
+    raise SystemExit(77)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux keeps to it")
+def test_a_harfbuzz_of_the_system_changes_nothing():
+    """Another library may load it for the whole process: then outlines were damaged, or the process ended."""
+    alone, beside = (
+        subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+        for code in (ALONE, FOREIGN + ALONE)
+    )
+    if beside.returncode == 77:
+        pytest.skip("this system has no libharfbuzz")
+    assert beside.returncode == 0, beside.stderr
+    assert beside.stdout == alone.stdout and len(alone.stdout) > 10_000
