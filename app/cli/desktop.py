@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from ..errors import UsageError
+from ..resources.program import permanent_command
 from ..resources.user_folders import shared_data_folder
 from .options import AsJson
 from .outcome import print_json
@@ -28,7 +29,7 @@ def desktop(
     with an icon, the type of graphs, how thumbnails of graphs and EXR files are made, and manual pages for man. It
     prints the files that it writes.
     """
-    from ..desktop import desktop_entries, find_program, install
+    from ..desktop import desktop_entries, install
     from ..desktop import remove as remove_files
     from .man_pages import write_man_pages
 
@@ -36,7 +37,7 @@ def desktop(
         raise UsageError("this is for desktops on Linux: on macOS and Windows, the application does this by itself")
     target = folder or shared_data_folder()
     pages = {f"man/man1/{name}": text.encode() for name, text in write_man_pages().items()}
-    files = {**desktop_entries(find_program()), **pages}
+    files = {**desktop_entries(permanent_command()), **pages}
     paths = remove_files(target, files) if remove else install(target, files)
     if as_json:
         print_json({"removed" if remove else "written": [str(path) for path in paths]})

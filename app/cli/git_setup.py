@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import shlex
-import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from ..resources.program import permanent_command
 from ..resources.sandbox import read_process_sandbox
 from .options import AsJson
 from .outcome import print_json
@@ -64,7 +64,8 @@ def git_setup(
 
 def git_settings() -> dict[str, str]:
     """The configuration of git that runs this installation of Halation, by name."""
-    call = f"{shlex.quote(Path(sys.executable).as_posix())} -P -m halation.cli git-driver"
+    program, *words = permanent_command()
+    call = shlex.join([Path(program).as_posix(), *words, "git-driver"])
     return {
         "diff.halation.command": f"{call} diff --",
         "diff.halation.textconv": f"{call} text --",

@@ -37,9 +37,9 @@ def write_man_pages() -> Mapping[str, str]:
 
 def _write_overview(commands: Mapping[str, Any]) -> str:
     usage = ("halation COMMAND [OPTIONS] [ARGUMENTS]", "halation COMMAND --help")
-    lines = [*_write_head("halation", str(app.info.help)), *_write_section("SYNOPSIS")]
+    lines = [*_write_head("halation", str(app.info.help)), ".SH SYNOPSIS"]
     lines += [line for words in usage for line in (".PP", f".B {_escape(words)}")]
-    lines += [*_write_options(get_command(app)), *_write_section("COMMANDS")]
+    lines += [*_write_options(get_command(app)), ".SH COMMANDS"]
     for name, command in commands.items():
         lines += [".TP", f".BR halation\\-{_escape(name)} (1)", _escape(_read_paragraphs(command)[0])]
     return _join([*lines, *_write_exit_codes()])
@@ -47,28 +47,25 @@ def _write_overview(commands: Mapping[str, Any]) -> str:
 
 def _write_page(name: str, command: Any, commands: Mapping[str, Any]) -> str:
     summary, *paragraphs = _read_paragraphs(command)
-    lines = [*_write_head(f"halation-{name}", summary), *_write_section("SYNOPSIS")]
-    lines += [f".B {_escape(write_usage(name, command))} [OPTIONS]", *_write_section("DESCRIPTION"), _escape(summary)]
+    lines = [*_write_head(f"halation-{name}", summary), ".SH SYNOPSIS"]
+    lines += [f".B {_escape(write_usage(name, command))} [OPTIONS]", ".SH DESCRIPTION", _escape(summary)]
     lines += [line for paragraph in paragraphs for line in (".PP", _escape(paragraph))]
     lines += _write_options(command)
-    others = [f".BR halation\\-{_escape(other)} (1)," for other in commands if other != name]
-    return _join([*lines, *_write_exit_codes(), *_write_section("SEE ALSO"), ".BR halation (1),", *others])
+    others = [".BR halation (1)", *(f".BR halation\\-{_escape(other)} (1)" for other in commands if other != name)]
+    return _join([*lines, *_write_exit_codes(), ".SH SEE ALSO", ",\n".join(others)])
 
 
 def _write_head(name: str, summary: str) -> list[str]:
     title = f'.TH {name.upper()} 1 "" "Halation {VERSION}" "Halation"'
-    return [title, *_write_section("NAME"), f"{_escape(name)} \\- {_escape(summary).rstrip('.')}"]
-
-
-def _write_section(name: str) -> list[str]:
-    return [f".SH {name}"]
+    return [title, ".SH NAME", f"{_escape(name)} \\- {_escape(summary).rstrip('.')}"]
 
 
 def _write_options(command: Any) -> Iterator[str]:
     """The section of arguments and options; none for a command without any."""
     entries = [(f"\\fI{_escape(write_argument(item))}\\fR", item.help) for item in list_arguments(command)]
     entries += [(_write_flags(item), item.help) for item in list_options(command)]
-    yield from _write_section("OPTIONS") if entries else ()
+    if entries:
+        yield ".SH OPTIONS"
     for head, text in entries:
         yield from (".TP", head, _escape(text or ""))
 
@@ -80,7 +77,7 @@ def _write_flags(option: Any) -> str:
 
 
 def _write_exit_codes() -> Iterator[str]:
-    yield from _write_section("EXIT STATUS")
+    yield ".SH EXIT STATUS"
     for code, meaning in _EXIT_CODE.findall(EXIT_CODES):
         yield from (".TP", code, _escape(meaning))
 
@@ -96,4 +93,4 @@ def _escape(text: str) -> str:
 
 
 def _join(lines: list[str]) -> str:
-    return "\n".join(line.rstrip(",") if line is lines[-1] else line for line in lines) + "\n"
+    return "\n".join(lines) + "\n"

@@ -22,6 +22,7 @@ import typer
 
 from ..errors import DeviceError
 from ..resources.heartbeat import BEACON_FILE, Watchdog, explain_memory_limit, name_signal
+from ..resources.program import module_command
 from .outcome import flush_output, print_note, report_failure
 from .signals import end_with_parent_thread, ignore_interrupts, relay_requests
 
@@ -102,7 +103,7 @@ def can_fork() -> bool:
 
 def run_session(work: Callable[[], int], timeout: float, as_json: bool) -> int:
     """Do work that renders many times in a copy of this process that this one watches, where there can be a copy."""
-    if os.environ.get(BEACON_FILE) or not can_fork():
+    if not _may_watch():
         return work()
     return run_forked(work, timeout, 0, as_json, tries_first=True)
 
@@ -119,12 +120,17 @@ def run_watched(
     return work()
 
 
+def _may_watch() -> bool:
+    """True if no process watches this one, and this one can watch a copy of itself."""
+    return not os.environ.get(BEACON_FILE) and can_fork()
+
+
 def run_service(work: Callable[[], int], timeout: float, as_json: bool) -> int:
     """As `run_session`, for work that serves clients without an end: after code that was stopped it begins again.
 
     The client whose code it was loses its connection, and so do those that are connected at that time.
     """
-    if os.environ.get(BEACON_FILE) or not can_fork():
+    if not _may_watch():
         return work()
     while True:
         try:
@@ -214,7 +220,7 @@ def rerun_watched(context: typer.Context, path: Path, graph: Graph, timeout: flo
     from .. import document
 
     text = document.dumps(graph) if str(path) == "-" else ""
-    command = [sys.executable, "-P", "-m", "halation.cli", *context.obj]
+    command = [*module_command("halation.cli"), *context.obj]
     with tempfile.TemporaryDirectory(prefix="halation-") as folder:
         return _watch(command, Watchdog(Path(folder, "heartbeat"), timeout), text)
 

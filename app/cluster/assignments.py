@@ -44,6 +44,14 @@ def average_cost(cost: float, seconds: Sequence[float]) -> float:
     return cost
 
 
+def split_suspects(frames: Sequence[int], before: Assignment, worker: str) -> list[Assignment]:
+    """The assignments of frames whose process ended: each that it may have worked on alone, the others together."""
+    tried = before.tried | {worker}
+    alone = [Assignment((frame,), before.attempts + 1, tried, before.stage) for frame in frames[:SUSPECTS]]
+    rest = tuple(frames[SUSPECTS:])
+    return [*alone, *([Assignment(rest, before.attempts, before.tried, before.stage)] if rest else ())]
+
+
 class AssignmentQueue:
     """The frames that nobody renders yet."""
 
@@ -83,7 +91,7 @@ class AssignmentQueue:
 
         Returns the frames that have ended too many processes.
         """
-        attempts, tried, stage = before.attempts + 1, before.tried | {worker}, before.stage
+        attempts, tried = before.attempts + 1, before.tried | {worker}
         if self._is_chain:
             if attempts >= MAX_ATTEMPTS:
                 return tuple(frames)
@@ -91,8 +99,6 @@ class AssignmentQueue:
             return ()
         if len(before.frames) == 1 and attempts >= MAX_ATTEMPTS:
             return tuple(frames)
-        for frame in frames[:SUSPECTS]:
-            self.put_back(Assignment((frame,), attempts, tried, stage))
-        if rest := tuple(frames[SUSPECTS:]):
-            self.put_back(Assignment(rest, before.attempts, before.tried, stage))
+        for assignment in split_suspects(frames, before, worker):
+            self.put_back(assignment)
         return ()

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Sequence
 from msgspec.structs import replace
 
 from ..renderer.jobs.shared_results import StoredMemory
-from .assignments import MAX_ATTEMPTS, SUSPECTS, Assignment, average_cost, count_chunk
+from .assignments import MAX_ATTEMPTS, Assignment, average_cost, count_chunk, split_suspects
 from .chunk import ChunkStage, StageReport
 
 MAX_SHARED_BYTES = 8 << 30
@@ -78,10 +78,8 @@ class StagedAssignments:
             return self.give_up_stage(before, before.frames[0])
         if len(frames) == 1 and attempts >= MAX_ATTEMPTS:
             return tuple(frames)
-        for frame in frames[:SUSPECTS]:
-            self.put_back(Assignment((frame,), attempts, tried, stage))
-        if rest := tuple(frames[SUSPECTS:]):
-            self.put_back(Assignment(rest, before.attempts, before.tried, stage))
+        for assignment in split_suspects(frames, before, worker):
+            self.put_back(assignment)
         return ()
 
     def finish(self, frames: Iterable[int]) -> None:

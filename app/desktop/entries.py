@@ -8,7 +8,8 @@ no kind of JSON but of text.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
@@ -67,7 +68,7 @@ MimeType={types};
 """
 
 
-def desktop_entries(program: tuple[str, ...]) -> Mapping[str, bytes]:
+def desktop_entries(program: Sequence[str]) -> Mapping[str, bytes]:
     """The content of each file by its path in a folder of shared data (`~/.local/share`, `/usr/share`).
 
     `program` is the command that runs Halation.
@@ -90,7 +91,7 @@ def desktop_entries(program: tuple[str, ...]) -> Mapping[str, bytes]:
 def _quote(word: str) -> str:
     """A word of a command in an entry: in double quotes where needed, as "The Exec key" of the specification says."""
     word = word.replace("%", "%%")
-    if word.replace("%", "").replace("/", "").replace(".", "").replace("-", "").replace("_", "").isalnum():
+    if re.fullmatch(r"[\w%./-]+", word):
         return word
     for character in '\\"`$':
         word = word.replace(character, f"\\{character}")

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 import subprocess
-import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
@@ -13,25 +11,12 @@ from ..errors import OutputError
 from ..resources.atomic_write import write_bytes_atomically
 from ..resources.sandbox import UNRESTRICTED
 
-PROGRAM_VARIABLE = "HALATION_PROGRAM"
-"""The environment variable by which the single file tells its own path: what it unpacks has another one."""
-
 _UPDATES = (
     ("update-desktop-database", "applications"),
     ("update-mime-database", "mime"),
     ("gtk-update-icon-cache", "icons/hicolor"),
 )
 """Programs that read the files anew, if the desktop has them, each with the folder that it is told."""
-
-
-def find_program() -> tuple[str, ...]:
-    """The command that runs this Halation from anywhere."""
-    if own := os.environ.get(PROGRAM_VARIABLE):
-        return (own,)
-    called = Path(sys.argv[0]).absolute()
-    if called.name == "halation" and os.access(called, os.X_OK):
-        return (str(called),)
-    return (sys.executable, "-P", "-m", "halation.cli")
 
 
 def install(folder: Path, files: Mapping[str, bytes]) -> list[Path]:

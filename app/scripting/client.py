@@ -6,7 +6,6 @@ import contextlib
 import json
 import socket
 import subprocess
-import sys
 import threading
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -14,6 +13,7 @@ from types import TracebackType
 from typing import IO, TYPE_CHECKING, Any, Self
 
 from ..errors import RenderError, rebuild_fault
+from ..resources.program import module_command
 from .packed_arrays import pack_array, unpack_array
 
 if TYPE_CHECKING:
@@ -138,7 +138,7 @@ def open_connection(path: Path | None) -> ServiceConnection:
         streams = connection.makefile("wb"), connection.makefile("rb")
         return ServiceConnection(*streams, lambda: _close_all(*streams, connection))
     process = subprocess.Popen(
-        [sys.executable, "-P", "-m", "halation.cli", "serve"],
+        [*module_command("halation.cli"), "serve"],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,

@@ -14,7 +14,6 @@ import json
 import math
 import signal
 import subprocess
-import sys
 import time
 from collections.abc import Callable, Mapping
 from concurrent.futures import CancelledError, Future
@@ -27,6 +26,7 @@ from msgspec import Struct, field
 from ...compiler import FIRST_TABLE, MAX_WEIGHTS, Pass, Plan, Shader
 from ...errors import DeviceError, describe_owner
 from ...resources.machine import available_cores, machine_memory, resident_memory
+from ...resources.program import module_command
 from ...resources.render_choices import DEFAULT_TIMEOUT
 
 MAX_TRIALS = 1024
@@ -127,7 +127,7 @@ class TrialProcess:
             self._end_process()
             self._idle_memory = 0
             self._process = subprocess.Popen(
-                [sys.executable, "-P", "-m", "halation.renderer.opengl.trial_worker"],
+                module_command("halation.renderer.opengl.trial_worker"),
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,

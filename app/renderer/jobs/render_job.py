@@ -6,13 +6,13 @@ decides which pixels are made and where they go. How progress is shown is not pa
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 
 from msgspec import field
 
 from ...graph.frames import is_video
+from ...resources.program import module_command
 from ...resources.render_choices import DEFAULT_TIMEOUT, Dither
 from ...resources.sandbox import Sandbox
 from ...resources.struct_json import parse_struct
@@ -75,4 +75,4 @@ def worker_command() -> list[str]:
     It writes a line of JSON on standard error for every pass and frame, and a report as JSON on standard output. With
     `-P`, modules that lie beside a graph are not imported.
     """
-    return [sys.executable, "-P", "-m", "halation.cli", "worker"]
+    return [*module_command("halation.cli"), "worker"]
