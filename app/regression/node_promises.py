@@ -135,6 +135,8 @@ def _try_sizes(renderer: Renderer, node: type[Node], _: str) -> Iterator[str]:
         pictures = make_pictures(node, (width, height), np.random.default_rng(5))
         size = None if pictures else (width, height)
         across, down = node().output_size(dict.fromkeys(pictures, (width, height)), (width, height))
+        if pictures and (width, height) == (1, 1):
+            across, down = 1, 1  # a picture of one pixel is a constant, which stays one
         for name, picture in render_node(renderer, node(), pictures, size).items():
             socket = node.outputs[name].socket
             shape = (1, 1, socket.channels) if socket.single else (down, across, socket.channels)

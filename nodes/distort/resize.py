@@ -14,7 +14,7 @@ class Resize(Filter):
 
     aliases = (
         "reformat", "scale", "scale image", "resample", "change resolution", "resolution", "canvas size", "letterbox",
-        "fit", "downscale", "upscale", "image size", "down-res", "up-res", "tv scale",
+        "fit", "downscale", "image size", "down-res", "up-res", "tv scale",
     )  # fmt: skip
     traits = (Trait.RESAMPLES,)
 
