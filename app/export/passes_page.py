@@ -12,7 +12,6 @@ from collections.abc import Iterable, Mapping
 from html import escape
 from pathlib import Path
 
-import numpy as np
 from msgspec import Struct, field
 from pygments import highlight
 from pygments.formatters import HtmlFormatter
@@ -20,11 +19,11 @@ from pygments.lexers.graphics import GLShaderLexer
 
 from ..compiler import Pass, Plan, Shader, Surface
 from ..compiler.explain import describe_frames, format_bytes
-from ..media.pictures.stored import Array, StoredPart, encode_for_viewing, encode_png
-from ..media.pictures.thumbnail import shrink_to_fit
+from ..media.pictures.stored import Array, encode_png
 from ..renderer import PassTrace
 from ..version import VERSION
 from .shipped_files import read_shipped_text
+from .surface_picture import picture_surface
 
 WIDTH = 320
 """Pixels across of a picture on the page: two of them and their reads fit beside each other on a laptop."""
@@ -157,17 +156,9 @@ class PassesPage(Struct):
 
 
 def shrink_surface(array: Array, surface: Surface, view: str) -> Thumbnail:
-    """A small PNG of the pixels of a surface: light through a view, data from its least number to its largest."""
-    if not surface.is_data and surface.channels == 4:
-        small = shrink_to_fit(array, WIDTH, WIDTH)
-        picture = encode_for_viewing(StoredPart(small, ("R", "G", "B", "A"), False), view)
-        return Thumbnail(encode_png(picture), (small.shape[1], small.shape[0]), None)
-    step = max(1, -(-array.shape[1] // WIDTH))
-    small = np.ascontiguousarray(array[::step, ::step], np.float32)  # a mean of data lies on no surface
-    finite = small[np.isfinite(small)]
-    span = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
-    picture = encode_for_viewing(StoredPart(small, ("data",), False), "", span)
-    return Thumbnail(encode_png(picture), (small.shape[1], small.shape[0]), span)
+    """A small PNG of the pixels of a surface."""
+    picture = picture_surface(array, surface, view, WIDTH)
+    return Thumbnail(encode_png(picture.codes), (picture.codes.shape[1], picture.codes.shape[0]), picture.span)
 
 
 def _describe_numbers(render_pass: Pass) -> str:

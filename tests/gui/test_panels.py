@@ -277,3 +277,18 @@ def test_a_render_from_the_form(gui, look: Path) -> None:
         assert ui.editor.exports.all == ()
 
     gui(body, look)
+
+
+def test_the_passes_of_the_viewer_are_cards_and_a_click_selects_their_nodes(gui) -> None:
+    def body(ui) -> None:
+        tab(ui, "Passes")
+        ui.until(lambda: "pass 2" in ui.editor.places)
+        ui.shot("passes.png")
+        assert ui.editor.passes.passes[0].reads == ("neon.exr Combined",)
+        ui.click("pass 1")
+        assert ui.session.selection == {"bloom"}
+        revision = ui.editor.passes.revision
+        ui.session.apply(SetValue(Port("bloom", "radius"), 0.02))
+        ui.until(lambda: ui.editor.passes.revision > revision)
+
+    gui(body, PRESET)

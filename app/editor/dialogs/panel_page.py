@@ -69,6 +69,10 @@ PARAGRAPHS: Mapping[PanelTitle, tuple[str, ...]] = MappingProxyType(
             "region of interest in the viewer limits what is measured.",
         ),
         PanelTitle.HISTORY: ("All steps of this session. A click goes to a step, back or forward.",),
+        PanelTitle.PASSES: (
+            "The files that are read and the passes that run for the picture of the viewer, in their order: what each "
+            "reads, the size and format of what it makes, and its time. A click selects its nodes.",
+        ),
     }
 )
 """What each panel is for."""

@@ -23,6 +23,7 @@ class PanelTitle(StrEnum):
     INSPECTOR = "Inspector"
     SCOPES = "Scopes"
     HISTORY = "History"
+    PASSES = "Passes"
 
 
 @dataclass

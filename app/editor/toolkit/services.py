@@ -20,6 +20,7 @@ from .context import Interface
 if TYPE_CHECKING:
     from ...authoring.preferences import PreferenceStore
     from ...authoring.preview import Preview
+    from ...authoring.preview.pass_pictures import PassPictures
     from ...authoring.recovery.recovery import RecoveryFile
     from ...authoring.session import Session
     from ...renderer.viewing.display import Display
@@ -48,6 +49,7 @@ class Services:
     watcher: FileWatcher
     renders: RenderOverviews
     coloring: ColorFallback
+    passes: PassPictures
     log: Log = field(default_factory=Log)
     shaders: ShaderFiles = field(default_factory=ShaderFiles)
     library: PresetLibrary = field(default_factory=PresetLibrary)

@@ -12,6 +12,7 @@ from ...authoring.log import Log
 from ...authoring.preferences import PreferenceStore, state_folder
 from ...authoring.preview import Preview
 from ...authoring.preview.color_fallback import ColorFallback
+from ...authoring.preview.pass_pictures import PassPictures
 from ...authoring.recovery.recovery import RecoveryFile
 from ...authoring.render_queue import RenderQueue
 from ...authoring.session import Session
@@ -64,6 +65,7 @@ def assemble(device: Device, sandbox: Sandbox, state: Path | None = None) -> Edi
         FileWatcher(sandbox),
         renders,
         ColorFallback(sandbox),
+        PassPictures(renderer),
         log,
     )
 
@@ -100,4 +102,5 @@ def take_apart(editor: Editor) -> None:
     editor.store.flush()
     editor.probe.close()
     editor.display.close()
+    editor.passes.close()
     editor.preview.close()

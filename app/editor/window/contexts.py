@@ -19,6 +19,7 @@ from ..history.context import HistoryContext
 from ..inspector.context import InspectorContext
 from ..library.context import PresetContext
 from ..log.context import LogContext
+from ..passes.context import PassesContext
 from ..preferences.context import PreferencesContext
 from ..problems.context import ProblemsContext
 from ..renders.context import RendersContext
@@ -52,6 +53,7 @@ class Contexts:
     history: HistoryContext
     inspector: InspectorContext
     log: LogContext
+    passes: PassesContext
     presets: PresetContext
     preferences: PreferencesContext
     problems: ProblemsContext
@@ -80,6 +82,7 @@ def compose_contexts(editor: Editor) -> Contexts:
         HistoryContext.compose(editor),
         InspectorContext.compose(editor, editor.canvas, editor.viewer, editor.timeline),
         LogContext.compose(editor),
+        PassesContext.compose(editor),
         PresetContext.compose(editor, editor.viewer),
         PreferencesContext.compose(editor),
         ProblemsContext.compose(editor, editor.canvas),

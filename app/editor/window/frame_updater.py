@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from halation.nodes import plugins
 from imgui_bundle import imgui
 
+from ...authoring.preview.request import PreviewRequest
 from ...compiler.library import reload_library
 from ...graph import Port
 from ...watch.code_files import code_files
@@ -16,7 +17,7 @@ from ...watch.reloading import NodeFiles, migrate_graph, shader_folder
 from ...watch.sequence_files import list_sequence_files
 from ...watch.watching import FileChange, Kind, find_group_files, find_pictures
 from ..problems.findings import service_faults
-from ..viewer.wanted import find_visible_region, list_wanted_ports
+from ..viewer.wanted import A, find_visible_region, list_wanted_ports
 
 if TYPE_CHECKING:
     from ...authoring.session import Session
@@ -106,6 +107,17 @@ class FrameUpdater:
         flat = {name: Port("/".join((*place, port.node)), port.socket) for name, port in ports.items()}
         preview.want(session.root, flat, bindings=session.bindings, scale=scale, frame=session.time.frame)
         self.is_working = preview.work(PLAY_BUDGET if editor.timeline.playing else FRAME_BUDGET)
+        self.is_working = self._run_passes(flat, scale) or self.is_working
+
+    def _run_passes(self, ports: Mapping[str, Port], scale: float) -> bool:
+        """Run the next pass for the panel of passes, if somebody looks at it; True while there are more."""
+        editor, session = self._editor, self._contexts.viewer.session
+        passes, port = editor.passes, ports.get(A)
+        if not passes.is_shown or port is None or editor.timeline.playing or editor.preview.busy:
+            return False
+        passes.is_shown = False
+        passes.want(PreviewRequest(session.root, {A: port}, dict(session.bindings), scale, session.time.frame, None))
+        return passes.work()
 
     def _play(self, session: Session) -> None:
         """Go to the frame that playback shows now."""

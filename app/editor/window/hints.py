@@ -85,6 +85,7 @@ _HINTS: dict[str, tuple[Hint, ...]] = {
     ),
     PanelTitle.SCOPES: (("viewer.region", "measure a part of the picture"),),
     PanelTitle.HISTORY: (("Click", "go to a step"),),
+    PanelTitle.PASSES: (("Click", "select its nodes"),),
     PanelTitle.PROBLEMS: (("Click", "show the node"), ("Right click", "copy")),
     PanelTitle.LOG: (("Right click", "copy"),),
 }

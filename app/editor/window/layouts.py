@@ -73,7 +73,7 @@ LAYOUTS: Mapping[LayoutName, DockLayout] = MappingProxyType(
                 (MAIN, "Right", imgui.Dir.right, 0.26),
                 (MAIN, "Side", imgui.Dir.right, 0.42),
             ),
-            MappingProxyType({PanelTitle.GRAPH: "Side", PanelTitle.HISTORY: "Right"}),
+            MappingProxyType({PanelTitle.GRAPH: "Side", PanelTitle.HISTORY: "Right", PanelTitle.PASSES: "Right"}),
             frozenset({PanelTitle.SCOPES}),
             (PanelTitle.VIEWER, PanelTitle.GRAPH, PanelTitle.ANIMATION, PanelTitle.INSPECTOR),
         ),

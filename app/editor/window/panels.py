@@ -21,6 +21,7 @@ from ..inspector.inspector import Inspector
 from ..library.dialog import PresetDialog
 from ..log.panel import LogPanel
 from ..log.toasts import Toasts
+from ..passes.panel import PassesPanel
 from ..preferences.dialog import PreferencesDialog
 from ..problems.panel import ProblemsPanel
 from ..renders.panel import RendersPanel
@@ -59,6 +60,7 @@ DOCKED = (
     Docked(PanelTitle.INSPECTOR, "Right", lambda contexts: Inspector(contexts.inspector)),
     Docked(PanelTitle.SCOPES, "RightLower", lambda contexts: ScopesPanel(contexts.viewer)),
     Docked(PanelTitle.HISTORY, "RightLower", lambda contexts: HistoryPanel(contexts.history)),
+    Docked(PanelTitle.PASSES, "RightLower", lambda contexts: PassesPanel(contexts.passes)),
 )
 
 OVERLAYS: tuple[tuple[str, Callable[[Contexts], Panel]], ...] = (

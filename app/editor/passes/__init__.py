@@ -1,0 +1,1 @@
+"""The Passes panel: how the picture of the viewer is made, pass by pass."""
