@@ -19,12 +19,21 @@ from halation.cli.facts import format_value
 from halation.graph.expressions.functions import FUNCTIONS
 from halation.lint.checking import RULES
 from halation.nodes import LIGHTS, built_in_nodes
+from menu_words import PROGRAMS
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = MappingProxyType(
     {"app": "halation", "nodes": "halation.nodes", "shaders": "halation.shaders", "presets": "halation.presets"}
 )
 """Top-level folder -> the package that it is."""
+
+
+_NODE_NAMES = """# Names of nodes in other programs
+
+What a node of another program is called here. Where several nodes are named, the first is the nearest one;
+`merge: screen` is `merge` with that mode. The search of the editor finds all of these names. What else is different is
+in [coming-from.md](coming-from.md).
+"""
 
 
 def list_packages() -> list[str]:
@@ -84,9 +93,31 @@ def _describe_light_field(name: str) -> tuple[str, ...]:
     return f"`{name}`", which, ", ".join([defaults[kinds[0].name], *others]), value.unit or "", value.doc
 
 
+def write_node_names() -> str:
+    """docs/node-names.md: what other programs call nodes. Names for the same nodes share a row."""
+    parts = [_NODE_NAMES]
+    for program, words in PROGRAMS:
+        names: dict[str, list[str]] = {}
+        for word, wanted in words.items():
+            names.setdefault(wanted, []).append(word)
+        rows = sorted((", ".join(sorted(same, key=str.lower)), wanted) for wanted, same in names.items())
+        lines = (f"| {same} | {_link_nodes(wanted)} |\n" for same, wanted in rows)
+        parts.append(f"\n## {program}\n\n| there | here |\n|---|---|\n{''.join(lines)}")
+    return "".join(parts)
+
+
+def _link_nodes(wanted: str) -> str:
+    """Links to the nodes that menu_words.py names: one with a mode, or several."""
+    node, _, mode = wanted.partition(":")
+    ids = node.split()
+    assert set(ids) <= built_in_nodes().keys(), f"menu_words.py names a node that does not exist: {wanted}"
+    return ", ".join(f"[{id}{': ' if mode else ''}{mode}](nodes.md#{id})" for id in ids)
+
+
 WHOLE_PAGES: Mapping[str, Callable[[], str]] = MappingProxyType(
     {
         "docs/api.md": api_reference.write_reference,
+        "docs/node-names.md": write_node_names,
         "docs/nodes.md": lambda: manual.catalogue_page(list(built_in_nodes().values())),
         "docs/writing-nodes.md": node_reference.write_reference,
     }

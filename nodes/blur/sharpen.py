@@ -10,7 +10,7 @@ class Sharpen(Filter):
     grain is not sharpened. The limit keeps it small, so that lamps do not get black halos. Alpha is kept.
     """
 
-    aliases = ("unsharp mask", "usm", "high pass", "detail", "clarity", "deblur", "texture")
+    aliases = ("unsharp mask", "usm", "high pass", "detail", "clarity", "deblur", "texture", "luma sharpen")
 
     image = Image()
     out = OutputSocket(follows="image")

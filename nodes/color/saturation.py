@@ -6,7 +6,10 @@ from .._declare import Image, Pointwise, Slider, Trait
 class Saturation(Pointwise):
     """Move colors away from or toward gray. The luminance (Rec.709) stays."""
 
-    aliases = ("vibrance", "desaturate", "black and white", "monochrome", "chroma", "color boost", "grayscale")
+    aliases = (
+        "vibrance", "desaturate", "black and white", "monochrome", "chroma", "color boost", "grayscale",
+        "colourfulness",
+    )  # fmt: skip
     traits = (Trait.NEEDS_COLOR,)
 
     image = Image()

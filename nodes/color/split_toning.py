@@ -13,7 +13,7 @@ class SplitToning(Pointwise):
 
     aliases = (
         "tint", "duotone", "tritone", "photo filter", "shadows highlights color", "teal and orange", "split tone",
-        "color tint", "toning", "color temperature shadows",
+        "color tint", "toning", "color temperature shadows", "sepia",
     )  # fmt: skip
     traits = (Trait.NEEDS_COLOR,)
 

@@ -14,7 +14,7 @@ class EdgeDetect(Filter):
     version = 2
     aliases = (
         "find edges", "sobel", "prewitt", "laplacian", "edges", "filter", "edge filter", "outline", "roberts", "kirsch",
-        "edge",
+        "edge", "edge detection",
     )  # fmt: skip
 
     proxy_notes = (ProxyNote(("magnitude", "out"), "its lines are one or two pixels wide at any size", "look"),)

@@ -35,7 +35,7 @@ class Convolve3x3(Filter):
     version = 2
     aliases = (
         "convolve", "convolution", "matrix", "kernel", "custom filter", "custom convolution", "filter", "laplacian",
-        "edge enhance", "soften", "shadow filter", "3x3",
+        "edge enhance", "soften", "shadow filter", "3x3", "matrix3x3",
     )  # fmt: skip
 
     proxy_notes = (ProxyNote(("out",), "it compares neighboring pixels, which are farther apart in a proxy"),)

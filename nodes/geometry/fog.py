@@ -30,7 +30,7 @@ class Fog(Filter):
 
     aliases = (
         "fog 3d", "depth fog", "mist", "haze", "atmosphere", "volume fog", "depth cue", "aerial perspective", "smoke",
-        "atmospherics", "depth haze",
+        "atmospherics", "depth haze", "adaptive fog",
     )  # fmt: skip
     traits = (Trait.NEEDS_SCENE_LIGHT,)
 

@@ -46,7 +46,7 @@ class Bloom(Filter):
 
     aliases = (
         "glow", "soft glow", "glare", "fog glow", "halation", "exponential glow", "diffusion", "optical glow", "halo",
-        "deep glow", "light bloom", "dreamy", "shine",
+        "deep glow", "light bloom", "dreamy", "shine", "magic bloom",
     )  # fmt: skip
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
 

@@ -13,7 +13,7 @@ class Noise(Pointwise):
 
     aliases = (
         "fractal noise", "perlin", "fast noise", "clouds", "turbulent noise", "plasma", "fbm", "noise texture",
-        "simplex", "turbulence", "cloud", "fractal", "musgrave", "gabor", "magic texture", "smoke",
+        "simplex", "turbulence", "cloud", "fractal", "musgrave", "gabor", "magic texture", "smoke", "se noise",
     )  # fmt: skip
 
     kind: Annotated[

@@ -50,7 +50,7 @@ class DepthOfField(Filter):
 
     aliases = (
         "dof", "defocus", "z defocus", "zdefocus", "z blur", "zblur", "bokeh", "bokeh blur", "camera lens blur",
-        "lens blur", "depth blur", "focus", "rack focus", "focal blur", "frischluft",
+        "lens blur", "depth blur", "focus", "rack focus", "focal blur", "frischluft", "cinematic dof",
     )  # fmt: skip
     traits = (Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
 

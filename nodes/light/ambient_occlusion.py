@@ -32,6 +32,7 @@ class AmbientOcclusion(Filter):
 
     aliases = (
         "ssao", "ao", "hbao", "gtao", "occlusion", "screen space ambient occlusion", "contact occlusion", "dirt", "sao",
+        "mxao",
     )  # fmt: skip
 
     proxy_notes = (

@@ -14,6 +14,7 @@ class DilateErode(Filter):
     aliases = (
         "dilate", "erode", "grow", "shrink", "choke", "spread", "matte choker", "simple choker", "morphology", "expand",
         "contract", "minimax", "filter erode", "erode fast", "erode filter", "dilate erode", "minimum", "maximum",
+        "erode blur", "erode smooth",
     )  # fmt: skip
 
     proxy_notes = (ProxyNote(("out",), "it enlarges single pixels, and a proxy averages small specks away"),)

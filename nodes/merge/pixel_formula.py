@@ -15,7 +15,7 @@ class PixelFormula(Filter):
 
     aliases = (
         "expression", "merge expression", "pixel expression", "formula", "math expression", "custom math", "shader",
-        "channel math", "custom tool", "per pixel", "calculate", "code",
+        "channel math", "custom tool", "per pixel", "calculate", "code", "se expr",
     )  # fmt: skip
 
     a = Image(0.0)

@@ -15,7 +15,7 @@ class FilmGrain(Pointwise):
 
     aliases = (
         "grain", "add grain", "noise", "film noise", "scanned grain", "match grain", "iso noise", "film stock",
-        "noise hls", "add noise", "sensor noise",
+        "noise hls", "add noise", "sensor noise", "se grain",
     )  # fmt: skip
     traits = (Trait.NEEDS_COLOR,)
     proxy_notes = (ProxyNote(("out",), "its pattern is as fine as pixels of the proxy"),)

@@ -20,7 +20,7 @@ class LocalToneMap(Filter):
 
     aliases = (
         "shadow highlight", "shadows highlights", "shadow and highlight", "hdr toning", "local contrast", "clarity",
-        "dodge and burn", "hdr compander", "local adaptation", "dynamic range compression", "detail",
+        "dodge and burn", "hdr compander", "local adaptation", "dynamic range compression", "detail", "fake hdr",
     )  # fmt: skip
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.MAKES_DISPLAY_LIGHT)
     proxy_notes = (

@@ -90,6 +90,19 @@ def test_every_keymap_is_complete(desk: Editor, contexts: Contexts, keymap: str)
     assert not reserved & {desk.actions.shortcut(id) for id in ids}
 
 
+def test_the_page_for_users_of_other_programs_has_these_keys(desk: Editor, contexts: Contexts) -> None:
+    page = (Path(__file__).parents[3] / "docs" / "coming-from.md").read_text(encoding="utf-8")
+    head, *rows = page.partition("| action | ")[2].partition("\n\n")[0].splitlines()
+    names = [name.strip().lower() for name in head.strip("|").split("|")]
+    ids = {action.label: action.id for action in reversed(desk.actions.all)}
+    for row in rows[1:]:
+        label, *keys = (cell.strip() for cell in row.strip("|").split("|"))
+        for name, pressed in zip(names, keys, strict=True):
+            desk.store.change(keymap=name)
+            assert desk.actions.shortcut(ids[label]) == pressed, (label, name)
+    assert len(rows) > 10 and names == list(KEYMAPS)
+
+
 def test_a_keymap_is_what_users_of_that_program_press(desk: Editor, contexts: Contexts) -> None:
     """Spot checks against the manuals of the programs."""
     manuals = {
