@@ -58,12 +58,22 @@ def edges(bits: np.ndarray, away: np.ndarray) -> np.ndarray:
     return np.einsum("...cj,...j->...c", PERLIN[bits >> np.uint32(28)], away)
 
 
-def value_noise(p: np.ndarray, seed: np.ndarray) -> np.ndarray:
-    return _cubes(p, lambda cell, away: unit(lattice(cell, seed)) * 2 - 1)
+ENDLESS = (np.inf, np.inf, np.inf)
+"""The periods of a noise that does not repeat, in cells along x, y and z."""
 
 
-def gradient_noise(p: np.ndarray, seed: np.ndarray) -> np.ndarray:
-    return 0.9649214 * _cubes(p, lambda cell, away: edges(lattice(cell, seed), away))
+def wrap(place: np.ndarray, period: tuple[float, ...]) -> np.ndarray:
+    """Places within the periods."""
+    repeats = np.isfinite(period)
+    return np.where(repeats, place % np.where(repeats, period, 1.0), place)
+
+
+def value_noise(p: np.ndarray, seed: np.ndarray, period: tuple[float, ...] = ENDLESS) -> np.ndarray:
+    return _cubes(p, lambda cell, away: unit(lattice(wrap(cell, period), seed)) * 2 - 1)
+
+
+def gradient_noise(p: np.ndarray, seed: np.ndarray, period: tuple[float, ...] = ENDLESS) -> np.ndarray:
+    return 0.9649214 * _cubes(p, lambda cell, away: edges(lattice(wrap(cell, period), seed), away))
 
 
 def _cubes(p: np.ndarray, corner) -> np.ndarray:
@@ -73,22 +83,25 @@ def _cubes(p: np.ndarray, corner) -> np.ndarray:
     return np.sum([weight * corner(cell + c, inside - c) for weight, c in weights], axis=0)
 
 
-def simplex_noise(p: np.ndarray, seed: np.ndarray) -> np.ndarray:
+def simplex_noise(p: np.ndarray, seed: np.ndarray, period: tuple[float, ...] = ENDLESS) -> np.ndarray:
     """The sum over all corners that could be in reach: it knows nothing of tetrahedra."""
     p = p * DENSITY
     cell = np.floor(p + p.sum(-1, keepdims=True) / 3)
     total = np.zeros(p.shape)
     for c in np.ndindex(4, 4, 4):
         corner = cell + np.array(c) - 1
-        away = p - (corner - corner.sum(-1, keepdims=True) / 6)
+        at = corner - corner.sum(-1, keepdims=True) / 6
+        away = p - at
+        at = wrap(np.round(6 * at), tuple(6 * DENSITY * cells for cells in period)) / 6
+        corner = np.round(at + at.sum(-1, keepdims=True) / 3)
         reach = np.maximum(0.5 - (away**2).sum(-1), 0) ** 4
         if reach.any():
             total += reach[..., None] * edges(lattice(corner, seed), away)
     return 76.88075 * total
 
 
-def white_noise(p: np.ndarray, seed: np.ndarray) -> np.ndarray:
-    return unit(lattice(np.floor(p), seed)) * 2 - 1
+def white_noise(p: np.ndarray, seed: np.ndarray, period: tuple[float, ...] = ENDLESS) -> np.ndarray:
+    return unit(lattice(wrap(np.floor(p), period), seed)) * 2 - 1
 
 
 KINDS = {"gradient": gradient_noise, "value": value_noise, "white": white_noise, "simplex": simplex_noise}

@@ -13,7 +13,8 @@ class Noise(Pointwise):
 
     aliases = (
         "fractal noise", "perlin", "fast noise", "clouds", "turbulent noise", "plasma", "fbm", "noise texture",
-        "simplex", "turbulence", "cloud", "fractal", "musgrave", "gabor", "magic texture", "smoke", "se noise",
+        "simplex", "turbulence", "cloud", "fractal", "musgrave", "magic texture", "smoke", "se noise",
+        "tileable noise", "seamless noise", "looping noise",
     )  # fmt: skip
 
     kind: Annotated[
@@ -65,6 +66,32 @@ class Noise(Pointwise):
     warp: Annotated[
         float, Slider(0.0, 8.0, unit="ratio", doc="How far warped noise is distorted, as a factor on the size.")
     ] = 2.0
+    offset: Annotated[
+        tuple[float, float], Slider(-500.0, 500.0, unit="px", doc="How far the pattern moves, to the right and down.")
+    ] = (0.0, 0.0)
+    period: Annotated[
+        tuple[float, float],
+        Slider(
+            0.0,
+            2048.0,
+            unit="px",
+            minimum=0.0,
+            doc="After how many pixels the pattern repeats, across and down; 0 never does. "
+            "The size changes so that a whole number of cells fits, "
+            "of simplex noise a multiple of six.",
+        ),
+    ] = (0.0, 0.0)
+    loop: Annotated[
+        float,
+        Slider(
+            0.0,
+            10.0,
+            unit="ratio",
+            minimum=0.0,
+            doc="After how much evolution the pattern is the same again; 0 is never. "
+            "A whole number is best, for simplex noise a multiple of six.",
+        ),
+    ] = 0.0
 
     out = OutputSocket(Image(doc="The value as an opaque gray."))
     value = OutputSocket(Field(doc="The value, 0..1. The average of fbm is 0.5."))
