@@ -1,4 +1,4 @@
-"""Tutorials and the page of jobs work as they are written: every file that they show, every command, in order."""
+"""Tutorials and pages of commands work as they are written: every file, every command and its output, in order."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 _BLOCK = re.compile(r"(?P<before>[^\n]*\n)?\n?```(?P<language>\w+)\n(?P<text>.*?)```", re.DOTALL)
+_EXIT_CODE = re.compile(r"# exit code (\d+)$")
 _NAME = re.compile(r"`([\w/.-]+\.(?:json|toml|glsl))`")
 
 
@@ -45,10 +46,22 @@ def test_each_job_of_the_page_how_to(tmp_path: Path) -> None:
     assert len(list((tmp_path / "graded").iterdir())) == 4
 
 
+@pytest.mark.nightly  # twenty-four commands: 15 s of processor time
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems bring OpenGL")
+def test_each_symptom_of_the_page_troubleshooting(tmp_path: Path) -> None:
+    follow_page("troubleshooting.md", tmp_path)
+    assert (tmp_path / "passes.html").stat().st_size > 1000
+
+
 def follow_page(page: str, tmp_path: Path) -> None:
-    """Write each file that a page shows, and run each command, in order."""
+    """Write each file that a page shows, and run each command, in order.
+
+    A command ends with the exit code that a comment behind it says, else with 0. A block of text is what the command
+    before it prints, or a part of that, with `...` for what may differ.
+    """
     text = (ROOT / "docs" / page).read_text(encoding="utf-8")
     ran = 0
+    printed = ""
     for block in _BLOCK.finditer(text):
         language, body = block["language"], block["text"]
         named = _NAME.findall(text[: block.start() + len(block["before"] or "")].rstrip().rpartition("\n\n")[2])
@@ -60,12 +73,18 @@ def follow_page(page: str, tmp_path: Path) -> None:
         elif language == "python":
             ended = halation([sys.executable, "-c", body], tmp_path)
             assert ended.returncode == 0, ended.stderr
+            printed = ended.stdout
+        elif language == "text":
+            wanted = ".*?".join(re.escape(" ".join(part.split())) for part in body.split("..."))
+            assert re.search(wanted, " ".join(printed.split())), (body, printed)
         else:
             for line in body.splitlines():
                 command, _, into = line.partition(" > ")
-                ended = halation(shlex.split(command), tmp_path)
-                assert ended.returncode == 0, (line, ended.stdout, ended.stderr)
+                ended = halation(shlex.split(command, comments=True), tmp_path)
+                code = _EXIT_CODE.search(line)
+                assert ended.returncode == (int(code[1]) if code else 0), (line, ended.stdout, ended.stderr)
                 assert " check " not in line or "warning" not in ended.stdout, (line, ended.stdout)
+                printed = ended.stdout + ended.stderr
                 if into:
                     (tmp_path / into).write_text(ended.stdout, encoding="utf-8")
                 ran += 1
