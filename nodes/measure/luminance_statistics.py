@@ -12,7 +12,7 @@ class LuminanceStatistics(Filter):
     """
 
     aliases = (
-        "levels", "histogram", "sampler", "curve tool", "average", "mean", "min max color", "measure", "analyze",
+        "levels", "sampler", "curve tool", "average", "mean", "min max color", "measure", "analyze",
         "image stats", "statistics", "auto levels", "min color", "normalize",
     )  # fmt: skip
 
