@@ -117,6 +117,24 @@ class PlaceGizmo:
 
 
 @dataclass(frozen=True)
+class JoiningLines:
+    """Lines that join positions, which have grips of their own."""
+
+    lines: tuple[tuple[Point, ...], ...]
+    is_deferred: bool = False
+    grips: tuple[GizmoGrip, ...] = ()
+
+    @property
+    def outlines(self) -> tuple[GizmoOutline, ...]:
+        """The lines."""
+        return tuple(GizmoOutline(points) for points in self.lines)
+
+    def drag(self, part: str, to: Point, snapping: Snapping, *, is_constrained: bool = False) -> GizmoDrag:
+        """Nothing: there is no grip."""
+        return GizmoDrag({})
+
+
+@dataclass(frozen=True)
 class SizeGizmo:
     """A length, as the radius of a circle around a point."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
@@ -12,7 +13,7 @@ from ...graph import Port, Unknown, signature
 from .box_gizmos import RectangleGizmo, TransformGizmo
 from .focus import is_idle
 from .geometry import Point, Sight
-from .gizmos import Gizmo, GizmoGrip, PlaceGizmo, SizeGizmo, TurnGizmo
+from .gizmos import Gizmo, GizmoGrip, JoiningLines, PlaceGizmo, SizeGizmo, TurnGizmo
 from .grips import GRIP_REACH
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
 _RECTANGLE = ("top_left", "bottom_right")
 _FRAME = ("position", "rotation", "scale", "skew")
+_GRID_POINT = re.compile("point_[1-9][1-9]")
 
 _ARM = 64.0
 """Length of the arm of a dial in pixels at UI scale 1: clear of the ring around its center and of the size grips."""
@@ -74,7 +76,7 @@ def list_gizmos(context: ViewerContext, sight: Sight, scale: float) -> tuple[Giz
     if active is None:
         return ()
     gizmos = [*_list_frames(active), *_list_dials(active), *_list_lengths(active), *_list_places(active)]
-    return tuple(gizmos)
+    return (*_list_lines(active), *gizmos)
 
 
 def find_grip(gizmos: tuple[Gizmo, ...], sight: Sight, at: Point, scale: float) -> tuple[Gizmo, GizmoGrip] | None:
@@ -142,6 +144,21 @@ def _list_places(active: _ActiveNode) -> list[Gizmo]:
         for name, value in active.values.items()
         if value.handle and name not in corners
     ]
+
+
+def _list_lines(active: _ActiveNode) -> list[Gizmo]:
+    """The lines of a grid whose points are called `point_11`, `point_12`, ... by row and column."""
+    names = sorted(name for name in active.numbers if _GRID_POINT.fullmatch(name))
+    rows = [[name for name in names if name[-2] == digit] for digit in sorted({name[-2] for name in names})]
+    columns = [[name for name in names if name[-1] == digit] for digit in sorted({name[-1] for name in names})]
+    lines = tuple(tuple(_place(active, name) for name in line) for line in (*rows, *columns))
+    return [JoiningLines(lines)] if lines else []
+
+
+def _place(active: _ActiveNode, name: str) -> Point:
+    """A position in pixels."""
+    x, y = active.numbers_of(name)
+    return x * active.frame.size[0], y * active.frame.size[1]
 
 
 def _has_rectangle(active: _ActiveNode) -> bool:
@@ -228,8 +245,7 @@ def _is_length(value: Value) -> bool:
 def _find_center(active: _ActiveNode) -> Point:
     """The point around which lengths and angles are: the only position of the node, or the middle of the picture."""
     places = [name for name, numbers in active.numbers.items() if name in _CENTERS and isinstance(numbers, tuple)]
-    x, y = active.numbers_of(places[0]) if places else (0.5, 0.5)
-    return x * active.frame.size[0], y * active.frame.size[1]
+    return _place(active, places[0]) if places else (0.5 * active.frame.size[0], 0.5 * active.frame.size[1])
 
 
 _CENTERS = ("center", "anchor", "source", "focus_point", "start")

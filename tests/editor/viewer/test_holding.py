@@ -90,6 +90,19 @@ def test_positions_of_the_active_node_can_be_dragged(editor: Any) -> None:
     assert list_grips(editor) == []
 
 
+def test_points_of_a_grid_are_dragged_and_joined_by_lines(editor: Any) -> None:
+    session = editor.session
+    warp = session.apply(AddNode("grid_warp"))
+    lines = [outline.points for gizmo in list_gizmos(editor, SIGHT, 1.0) for outline in gizmo.outlines]
+    assert len(list_grips(editor)) == 16 and len(lines) == 8
+    assert sum(lines[1], ()) == pytest.approx((0.0, 200 / 3, 400 / 3, 200 / 3, 800 / 3, 200 / 3, 400.0, 200 / 3))
+    assert sum(lines[4], ()) == pytest.approx((0.0, 0.0, 0.0, 200 / 3, 0.0, 400 / 3, 0.0, 200.0))
+    assert drag(editor, (800 / 3, 400 / 3), (340.0, 160.0)) == "handle"
+    assert session.graph.value(Port(warp, "point_22")) == pytest.approx((0.425, 0.4))
+    session.undo()
+    assert session.graph.value(Port(warp, "point_22")) == pytest.approx((1 / 3, 1 / 3))
+
+
 def test_drags_in_a_row_are_steps_of_their_own(editor: Any) -> None:
     ramp = editor.session.apply(AddNode("ramp"))
     drag(editor, (0.0, 200.0), (200.0, 100.0))
