@@ -21,6 +21,7 @@ Values reach `passes` and GLSL in working units (see `Slider.unit`), so no node 
 from __future__ import annotations
 
 from .camera import CameraModel, look_at, orbit_camera
+from .curve_pairs import CurvePair, CurvePairSet, curve_pairs_of, name_curve_pairs
 from .curves import MAX_POINTS, curve_at, curve_knots, ramp_at, ramp_knots
 from .draw import Affine, Argument, Draw, Drawn, Kernel, Overlap, Pixels, Reach, Resampling, ShaderStage, ShaderText
 from .host import HostProgram
@@ -164,6 +165,8 @@ __all__ = [
     "CubicCurve",
     "Curve",
     "Curve4",
+    "CurvePair",
+    "CurvePairSet",
     "Dial",
     "Doc",
     "Draw",
@@ -255,6 +258,7 @@ __all__ = [
     "convert_length",
     "curve_at",
     "curve_knots",
+    "curve_pairs_of",
     "curve_point",
     "float_bits",
     "format_names",
@@ -273,6 +277,7 @@ __all__ = [
     "make_ellipse",
     "matte_of",
     "murmur3",
+    "name_curve_pairs",
     "name_light_groups",
     "name_lights",
     "name_reference",

@@ -222,6 +222,16 @@ class TurnGizmo:
         return GizmoDrag({self.port: round(min(max(angle, self.low), self.high), 2)})
 
 
+def bend_through(start: Point, middle: Point, end: Point) -> tuple[Point, ...]:
+    """Points on the parabola through three points."""
+    points = list[Point]()
+    for number in range(13):
+        t = number / 12
+        a, b, c = (1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)
+        points.append((a * start[0] + b * middle[0] + c * end[0], a * start[1] + b * middle[1] + c * end[1]))
+    return tuple(points)
+
+
 def go_from(start: Point, degrees: float, length: float) -> Point:
     """The point at a distance from another one, in a direction clockwise from the right."""
     turn = math.radians(degrees)

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
-from halation.nodes import Plain, Value, is_length, unit_factor
+from halation.nodes import ItemSet, Plain, Value, is_length, unit_factor
 
 from ...graph import Port, Unknown, signature
+from ...graph.named_items import join_path
 from .box_gizmos import RectangleGizmo, TransformGizmo
 from .focus import is_idle
 from .geometry import Point, Sight
-from .gizmos import Gizmo, GizmoGrip, JoiningLines, PlaceGizmo, SizeGizmo, TurnGizmo
+from .gizmos import Gizmo, GizmoGrip, JoiningLines, PlaceGizmo, SizeGizmo, TurnGizmo, bend_through
 from .grips import GRIP_REACH
 
 if TYPE_CHECKING:
@@ -122,7 +124,7 @@ def _find_active(context: ViewerContext, frame: PictureFrame) -> _ActiveNode | N
     item = session.graph.nodes.get(session.active)
     if not context.viewer.has_gizmos or item is None or isinstance(item, Unknown):
         return None
-    ports = [Port(session.active, name) for name in signature(item).values]
+    ports = [Port(session.active, name) for name in _list_paths(signature(item).values.values())]
     values = {
         port.socket: session.graph.declaration(port)
         for port in ports
@@ -136,6 +138,17 @@ def _find_active(context: ViewerContext, frame: PictureFrame) -> _ActiveNode | N
     return _ActiveNode(session.active, values, numbers, units, frame, crops and behind)
 
 
+def _list_paths(values: Iterable[Value]) -> Iterator[str]:
+    """The values of a node, and the positions of their items; splines have tools of their own."""
+    for value in values:
+        yield value.name
+        if value.items and isinstance(value.default, ItemSet):
+            for name, item in value.default.items():
+                fields = value.items.by_name[item.kind].declarations
+                if not any(field.type == "spline" for field in fields):
+                    yield from (join_path(value.name, name, field.name) for field in fields if field.handle)
+
+
 def _list_places(active: _ActiveNode) -> list[Gizmo]:
     """Positions, but corners of rectangles."""
     corners = _RECTANGLE if _has_rectangle(active) else ()
@@ -147,12 +160,16 @@ def _list_places(active: _ActiveNode) -> list[Gizmo]:
 
 
 def _list_lines(active: _ActiveNode) -> list[Gizmo]:
-    """The lines of a grid whose points are called `point_11`, `point_12`, ... by row and column."""
+    """The lines of a grid of points `point_11`, `point_12`, ... by row and column; curves by start, middle and end."""
     names = sorted(name for name in active.numbers if _GRID_POINT.fullmatch(name))
     rows = [[name for name in names if name[-2] == digit] for digit in sorted({name[-2] for name in names})]
     columns = [[name for name in names if name[-1] == digit] for digit in sorted({name[-1] for name in names})]
-    lines = tuple(tuple(_place(active, name) for name in line) for line in (*rows, *columns))
-    return [JoiningLines(lines)] if lines else []
+    lines = [tuple(_place(active, name) for name in line) for line in (*rows, *columns)]
+    for name in active.values:
+        if name.endswith("_middle"):
+            ends = (name.replace("_middle", end) for end in ("_start", "_middle", "_end"))
+            lines.append(bend_through(*(_place(active, end) for end in ends)))
+    return [JoiningLines(tuple(lines))] if lines else []
 
 
 def _place(active: _ActiveNode, name: str) -> Point:

@@ -103,6 +103,22 @@ def test_points_of_a_grid_are_dragged_and_joined_by_lines(editor: Any) -> None:
     assert session.graph.value(Port(warp, "point_22")) == pytest.approx((1 / 3, 1 / 3))
 
 
+def test_curves_of_a_morph_are_dragged_by_their_points(editor: Any) -> None:
+    session = editor.session
+    warp = session.apply(AddNode("spline_warp"))
+    fields = [f"{side}_{end}" for side in ("from", "to") for end in ("start", "middle", "end")]
+    assert list_grips(editor) == [f"{warp}.reach", *(f"{warp}.curves.curve_1.{field}" for field in fields)]
+    lines = [outline.points for outline in list_gizmos(editor, SIGHT, 1.0)[0].outlines]
+    assert len(lines) == 2 and sum((lines[0][0], lines[0][6], lines[0][12]), ()) == pytest.approx(
+        (180.0, 70.0, 180.0, 100.0, 180.0, 130.0)
+    )
+    assert drag(editor, (360.0, 200.0), (300.0, 220.0)) == "handle"
+    port = Port(warp, "curves.curve_1.from_middle")
+    assert session.graph.value(port) == pytest.approx((0.375, 0.55))
+    session.undo()
+    assert session.graph.value(port) == pytest.approx((0.45, 0.5))
+
+
 def test_drags_in_a_row_are_steps_of_their_own(editor: Any) -> None:
     ramp = editor.session.apply(AddNode("ramp"))
     drag(editor, (0.0, 200.0), (200.0, 100.0))
