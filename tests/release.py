@@ -1,6 +1,6 @@
 """`./dev release`: what is published of a version, into out/release, from the last commit.
 
-The wheel, the source archive, NOTICE with the licenses of all that a full installation brings, a bill of materials in
+The wheel, the source archive, NOTICE with the licenses of all that a full installation brings, bills of materials in
 the form of CycloneDX, the application for Linux as an archive and as one file, and SHA256SUMS. The same commit gives
 the same bytes, so that anybody can build a release again and compare. Four things would differ otherwise, and each is
 fixed here: files come from the commit and not from the working folder, dates are that of the commit, rights do not
@@ -23,10 +23,11 @@ import tarfile
 import tempfile
 import tomllib
 from collections.abc import Iterable, Iterator
-from importlib.metadata import Distribution, distributions, version
+from importlib.metadata import Distribution, distribution, distributions, version
 from pathlib import Path
 
-from application.build import build_folder, list_notices, pack_folder, write_single_file
+from application.build import SystemPart, build_folder, list_system_parts, pack_folder, write_single_file
+from bill_of_materials import write_application_bill, write_environment_bill
 
 ROOT = Path(__file__).parents[1]
 DEVELOPMENT_EXTRAS = frozenset({"docs", "release", "test"})
@@ -56,7 +57,7 @@ def main() -> None:
         python = install_everything(builds[0][1], work / "installation")
         (libraries,) = python.parents[1].glob("lib/python*/site-packages")
         notice = write_notice(distributions(path=[str(libraries)]))
-        write_bill_of_materials(python, folder / "halation.cdx.json")
+        write_environment_bill(python, folder / "halation.cdx.json")
         if sys.platform == "linux":
             notice += write_application(python, work, folder, commit_time)
         (folder / "NOTICE").write_text(notice, encoding="utf-8", newline="\n")
@@ -81,8 +82,17 @@ def write_application(python: Path, work: Path, folder: Path, commit_time: int) 
         sys.exit("release: two builds of the application differ; this is a fault of tests/application/build.py")
     shutil.copy(archives[0], folder)
     write_single_file(archives[0], folder / f"{name}.run")
-    parts = [f"{'=' * 80}\n{title}\n\n{text}\n" for title, text in list_notices(applications[0]).items()]
-    return "\nThe application for Linux holds these too.\n" + "\n".join(parts)
+    parts = [*list_system_parts(applications[0]), describe_bootloader()]
+    write_application_bill(folder / "halation.cdx.json", parts, folder / f"{name}.cdx.json")
+    texts = [f"{'=' * 80}\n{part.name} {part.version}\n\n{part.notice}\n" for part in parts]
+    return "\nThe application for Linux holds these too.\n" + "\n".join(texts)
+
+
+def describe_bootloader() -> SystemPart:
+    """The program of PyInstaller that starts the application."""
+    package = distribution("pyinstaller")
+    texts = "\n".join(read_license_texts(package))
+    return SystemPart("pyinstaller", package.version, f"pkg:pypi/pyinstaller@{package.version}", texts)
 
 
 def read_version() -> str:
@@ -151,12 +161,6 @@ def install_everything(wheel: Path, folder: Path) -> Path:
     for origin in folder.glob("lib/python*/site-packages/halation-*/direct_url.json"):
         origin.unlink()  # names the temporary folder
     return python
-
-
-def write_bill_of_materials(python: Path, target: Path) -> None:
-    """Write what an environment has installed, by the tool of CycloneDX, which checks it against the standard."""
-    command = [sys.executable, "-m", "cyclonedx_py", "environment", "--pyproject", ROOT / "pyproject.toml"]
-    subprocess.run([*command, "--output-reproducible", "--output-file", target, python], check=True)
 
 
 def write_notice(packages: Iterable[Distribution]) -> str:

@@ -47,6 +47,7 @@ REASONS: dict[str, Cause] = {
     "it is never part of a drag": "case",
     "Dask is not installed": "tool",
     "check-jsonschema is not installed": "tool",
+    "cyclonedx-bom is not installed": "tool",
     "PyAV is not installed": "tool",
     "pyoidn is not installed": "tool",
     "this PyAV has no encoder": "tool",

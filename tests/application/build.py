@@ -21,7 +21,8 @@ import tarfile
 from collections.abc import Mapping
 from fnmatch import fnmatch
 from pathlib import Path
-from typing import IO, cast
+from typing import IO, NamedTuple, cast
+from urllib.parse import quote
 
 HERE = Path(__file__).parent
 _WHOLE_PACKAGES = ("imgui_bundle", "OpenImageIO", "PyOpenColorIO", "pyoidn", "dask", "distributed", "trimesh")
@@ -65,20 +66,45 @@ def compile_modules(python: Path, libraries: Path, environment: Mapping[str, str
     subprocess.run([python, "-m", "compileall", *options, libraries / "halation"], env=environment, check=True)
 
 
-def list_notices(application: Path) -> dict[str, str]:
-    """The licenses of what comes from this machine, by its name: of Python, and of libraries that are no package's.
+class SystemPart(NamedTuple):
+    """What an application holds that is no Python package: its place in a bill of materials, and its license."""
+
+    name: str
+    version: str
+    purl: str
+    notice: str
+    license: str = ""
+    """An identifier of SPDX, where there is one for all of it."""
+
+
+def list_system_parts(application: Path) -> list[SystemPart]:
+    """What comes from this machine: Python, and the libraries that are no package's.
 
     Debian's system says to which of its packages a library belongs, and keeps the text of each license.
     """
-    license = Path(sysconfig.get_path("stdlib"), "LICENSE.txt")
-    notices = {f"Python {platform.python_version()}": license.read_text(encoding="utf-8") if license.is_file() else ""}
+    number = platform.python_version()
+    text = read_text(Path(sysconfig.get_path("stdlib"), "LICENSE.txt"))
+    parts = {"Python": SystemPart("Python", number, f"pkg:generic/python@{number}", text, "Python-2.0")}
     for path in sorted((application / "lib").glob("*.so*")):
         places = [Path(folder, path.name) for folder in _LIBRARY_FOLDERS]
         outcome = subprocess.run(["dpkg-query", "-S", *places], capture_output=True, text=True)
         if owner := re.match(r"[^:,\s]+", outcome.stdout):
-            copyright = Path("/usr/share/doc", owner[0], "copyright")
-            notices[owner[0]] = copyright.read_text(encoding="utf-8") if copyright.is_file() else ""
-    return notices
+            parts[owner[0]] = describe_debian_package(owner[0])
+    return list(parts.values())
+
+
+def describe_debian_package(name: str) -> SystemPart:
+    """A package of the Debian or Ubuntu that this machine runs."""
+    query = ["dpkg-query", "-W", "--showformat", "${Version} ${Architecture}\\n", name]
+    version, architecture = subprocess.run(query, capture_output=True, text=True, check=True).stdout.split()[:2]
+    system = platform.freedesktop_os_release()["ID"]
+    purl = f"pkg:deb/{system}/{quote(name)}@{quote(version)}?arch={architecture}"
+    return SystemPart(name, version, purl, read_text(Path("/usr/share/doc", name, "copyright")))
+
+
+def read_text(path: Path) -> str:
+    """The text of a file, or nothing where there is none."""
+    return path.read_text(encoding="utf-8") if path.is_file() else ""
 
 
 def remove_libraries(libraries: Path) -> None:
