@@ -49,6 +49,20 @@ class Region(Struct, frozen=True):
     def down(self) -> Span:
         return (self.y, self.y + self.height)
 
+    def contains(self, region: Region) -> bool:
+        """True if all pixels of a region lie in this one."""
+        return self.union(region) == self
+
+    def grow(self, margin: int) -> Region:
+        """The region with so many more pixels on each side."""
+        return Region(self.x - margin, self.y - margin, self.width + 2 * margin, self.height + 2 * margin)
+
+    def intersect(self, region: Region) -> Region:
+        """The pixels that lie in both, of which there must be some."""
+        spans = zip((self.across, self.down), (region.across, region.down), strict=True)
+        across, down = ((max(own[0], their[0]), min(own[1], their[1])) for own, their in spans)
+        return Region.of(across, down)
+
     def union(self, region: Region) -> Region:
         """The smallest region that holds both."""
         spans = zip((self.across, self.down), (region.across, region.down), strict=True)
@@ -87,14 +101,18 @@ def scale_size(size: Size, scale: float) -> Size:
     return max(1, round(size[0] * scale)), max(1, round(size[1] * scale))
 
 
-def clip_span(span: Span, length: int, edge: Edge) -> Span:
-    """The pixels of a row of `length` that an edge mode reads for a span that goes beyond its ends."""
+def clip_span(span: Span, length: int, edge: Edge, kept: Span | None = None) -> Span:
+    """The pixels of a row of `length` that an edge mode reads for a span that goes beyond its ends.
+
+    Of a row of which more is `kept`, clamp and black read more. The other modes continue the row itself.
+    """
     first, end = span
+    if edge in ("clamp", "black"):
+        start, stop = kept or (0, length)
+        return min(max(first, start), stop - 1), max(min(end, stop), start + 1)
     if first >= 0 and end <= length:
         return span
     low, high = min(max(first, 0), length - 1), max(min(end, length), 1)
-    if edge in ("clamp", "black"):
-        return low, high
     if edge in ("wrap", "panorama") or first < -length or end > 2 * length:
         return 0, length
     turn = 1 if edge == "mirror" else 0
@@ -105,11 +123,12 @@ def clip_span(span: Span, length: int, edge: Edge) -> Span:
     return low, high
 
 
-def clip_region(across: Span, down: Span, size: Size, edge: Edge) -> Region:
-    """The pixels of a picture that an edge mode reads for spans that go beyond its edges."""
+def clip_region(across: Span, down: Span, size: Size, edge: Edge, kept: Region | None = None) -> Region:
+    """The pixels of a picture, of which more may be `kept`, that an edge mode reads for spans beyond its edges."""
     if edge == "panorama" and (down[0] < 0 or down[1] > size[1]):  # across a pole lies the other half of the row
         return Region.of((0, size[0]), clip_span(down, size[1], "reflect"))
-    return Region.of(clip_span(across, size[0], edge), clip_span(down, size[1], edge))
+    kept = kept or Region.whole(size)
+    return Region.of(clip_span(across, size[0], edge, kept.across), clip_span(down, size[1], edge, kept.down))
 
 
 def _find_span(places: list[float], radius: float) -> Span:

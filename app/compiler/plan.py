@@ -96,8 +96,8 @@ class Upload(Struct, frozen=True):
     surface: int
     picture: Picture
     node: str
-    whole: Size
-    """The size of the whole picture, of which the surface may hold a part."""
+    whole: Region
+    """All pixels of the picture, of which the surface may hold a part."""
 
 
 class HostTask(Struct, frozen=True):

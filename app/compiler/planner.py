@@ -19,6 +19,7 @@ from ..resources.collection import pause_collection
 from ..resources.picture import Picture
 from ..resources.provider import ResourceProvider
 from .areas import Region
+from .data_windows import add_data_windows, add_extents
 from .fusion.fuse import fuse
 from .fusion.limits import operations_fit
 from .fusion.rewrites import rewrite_passes
@@ -31,6 +32,7 @@ from .lowering.samples import lower_samples
 from .lowering.steps import LoweringRecord
 from .plan import Plan
 from .request import Request
+from .scheduling.differences import find_changed_numbers
 from .scheduling.schedule import ScheduleRecord, choose_formats, reschedule, schedule
 from .target import NULL, Precision, Target
 from .tiling.regions import focus_program
@@ -107,9 +109,12 @@ class Planner:
             fusion,
         )
         before, lowered = self._lower(options, graph, request, provider, library)
-        scheduled = reschedule(before.scheduled, lowered.program, library) if before else None
+        program = lowered.program
+        if graph.settings.overscan:
+            program = add_data_windows(program, graph.settings.overscan)
+        scheduled = _schedule_again(before.scheduled, program, library) if before else None
         may_need_tiles = before.may_need_tiles if before and scheduled else True
-        scheduled = scheduled or _schedule(options, lowered.program, library)
+        scheduled = scheduled or _schedule(options, program, library)
         region = before.region if before else None
         chosen = scheduled
         if request.region is not None:
@@ -140,7 +145,23 @@ def _schedule(options: PlanOptions, program: LoweredProgram, library: Library) -
     target = options.target
     passes = fuse(program, target, enabled=options.fusion)
     passes = rewrite_passes(program, passes, target, library) if options.fusion else passes
-    return schedule(program, passes, library, target, options.precision, options.halves)
+    return schedule(add_extents(program, passes), passes, library, target, options.precision, options.halves)
+
+
+def _schedule_again(before: ScheduleRecord, program: LoweredProgram, library: Library) -> ScheduleRecord | None:
+    """The plan of a program that differs from that of `before` only in numbers; None if it differs in more.
+
+    Which pixels are made beyond the frame may depend on numbers, so it is found each time.
+    """
+    if program.data_windows != before.program.data_windows:
+        return None
+    if program.data_windows:
+        if find_changed_numbers(before.program, program) is None:
+            return None
+        program = add_extents(program, before.passes)
+        if program.extents != before.program.extents:
+            return None
+    return reschedule(before, program, library)
 
 
 def _schedule_region(

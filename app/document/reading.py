@@ -163,6 +163,7 @@ class _BodyReader(Struct):
                 ColorSettings(color.config, color.working),
                 settings.allow,
                 settings.reference_height,
+                settings.overscan,
             ),
             muted=frozenset(muted),
             ui=record.ui,

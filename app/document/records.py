@@ -9,6 +9,7 @@ from halation.nodes import MAX_REFERENCE_HEIGHT, Kind, Missing
 
 from ..errors import DocumentError
 from ..graph import Extrapolation, Interpolation
+from ..resources.picture import MAX_OVERSCAN
 from .syntax import member
 
 Count = Annotated[int, msgspec.Meta(ge=1)]
@@ -63,6 +64,7 @@ class SettingsRecord(msgspec.Struct):
     rate: Annotated[float, msgspec.Meta(gt=0)] = 24.0
     preroll: Annotated[int, msgspec.Meta(ge=0)] | None = None
     reference_height: Annotated[int, msgspec.Meta(ge=1, le=MAX_REFERENCE_HEIGHT)] | None = None
+    overscan: Annotated[float, msgspec.Meta(ge=0, le=MAX_OVERSCAN)] = 0.0
     color: Section = {}
     allow: dict[str, str] = {}
 

@@ -48,6 +48,7 @@ _DOCS = {
     "SettingsRecord.rate": "Frames per second.",
     "SettingsRecord.preroll": "How many frames before the requested one nodes with a memory start.",
     "SettingsRecord.reference_height": "Numbers of lengths in pixels are pixels of a picture of this height.",
+    "SettingsRecord.overscan": "How far beyond their frame pictures are kept, in heights of the frame.",
     "SettingsRecord.color": "How colors are managed.",
     "SettingsRecord.allow": "Warnings of halation check that are intended: a reason for each rule, or rule:node.",
     "InputRecord.type": "The type of the pictures or numbers.",

@@ -136,7 +136,9 @@ class Settings:
     all from the first one, so that a frame does not depend on where a render starts. `reference_height`: with it,
     numbers of lengths in pixels are pixels of a picture of this height, so that the look is the same at every size;
     without it they are pixels of the picture. It holds for one body: each group has its own. `color`: color management,
-    also in groups. `allow`: reasons why a warning is intended, by `rule` or `rule:node`.
+    also in groups. `allow`: reasons why a warning is intended, by `rule` or `rule:node`. `overscan`: how far beyond its
+    frame a picture is kept, in heights of the frame, where it goes on there; by default every picture ends at its
+    frame.
     """
 
     size: Size | None = None
@@ -146,6 +148,7 @@ class Settings:
     color: ColorSettings = field(default_factory=ColorSettings)
     allow: Mapping[str, str] = field(default_factory=dict[str, str], repr=False)  # no picture depends on it
     reference_height: int | None = None
+    overscan: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "allow", freeze(self.allow))

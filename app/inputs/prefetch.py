@@ -68,7 +68,10 @@ def _predict_requests(graph: Graph, inputs: Mapping[str, str], sandbox: Sandbox)
         path, layer = _find_file(graph, socket, inputs.get(name), sandbox=sandbox)
         if path and not is_video(path) and Pattern.parse(path) is None and Path(path).is_file():
             width = socket.socket().channels
-            yield path, LayerRequest(layer, socket.kind, width, socket.color_space, manager)
+            yield (
+                path,
+                LayerRequest(layer, socket.kind, width, socket.color_space, manager, graph.settings.overscan > 0.0),
+            )
 
 
 def _find_file(graph: Graph, socket: Input, bound: str | None, sandbox: Sandbox) -> tuple[str, str]:

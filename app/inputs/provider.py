@@ -135,7 +135,7 @@ class MediaProvider:
         color = picture.kind.is_color and not layer.is_data
         mark = _conversion_mark(picture, sandbox=self.sandbox) if color else ""
         half = layer.is_half and not (mark and _changes_numbers(picture, layer.full_name, sandbox=self.sandbox))
-        return PictureProbe(header.size, half, header.fingerprint + mark, header.by_rows)
+        return PictureProbe(header.size, half, header.fingerprint + mark, header.by_rows, header.overscan)
 
     def find_plain_view(self, picture: Picture) -> str | None:
         """The view that encodes color as a picture for a screen has it, "" for light of a scene, None for data.
@@ -167,6 +167,7 @@ class MediaProvider:
             picture.width,
             picture.space,
             get_color_manager(picture.color, self.sandbox),
+            picture.overscan,
         )
         if picture.rows is not None:
             from ..media.pictures.row_reader import read_rows

@@ -22,10 +22,11 @@ from ..color.transforms import (
     to_float,
     to_working,
 )
+from ..resources.picture import PixelRectangle
 from .layers import ImageInfo, Layer
 from .pictures.color_hints import has_straight_alpha, read_color_hints
 from .pictures.finite import fill_non_finite, find_non_finite, has_non_finite
-from .pictures.open import read_orientation
+from .pictures.open import find_data_window, read_orientation
 
 _LARGEST_COUNT = 2**32 - 1
 """The white of 32-bit integers: the largest one."""
@@ -45,6 +46,8 @@ class LayerRequest(Struct, frozen=True):
     width: int = 4
     space: str = ""
     manager: ColorManager = field(default_factory=get_default_color_manager)
+    overscan: bool = False
+    """Whether pixels around the display window are wanted as well, as far as `ImageInfo.overscan` says."""
 
     @property
     def wants_color(self) -> bool:
@@ -68,8 +71,8 @@ class Pixels(Struct, frozen=True):
 def convert_layer(block: Array, layer: Layer, request: LayerRequest, spec: oiio.ImageSpec, info: ImageInfo) -> Pixels:
     """The array for a socket, from the channels of a layer over the data window that `spec` describes.
 
-    The order matters: NaN and infinity are repaired among the pixels of the file, before the display window surrounds
-    them with zeros.
+    The order matters: NaN and infinity are repaired among the pixels of the file, before the window that is wanted
+    surrounds them with zeros.
     """
     is_color, warning = request.wants_color and not layer.is_data, ""
     if is_color:
@@ -82,7 +85,9 @@ def convert_layer(block: Array, layer: Layer, request: LayerRequest, spec: oiio.
         width = request.width if request.kind is Kind.VECTOR else 1
         array = _fit_width(to_float(block[..., :width]), width)
     array, repaired = _repair(np.ascontiguousarray(array), is_color)
-    array = _place_in_display_window(array, spec)
+    width, height = spec.full_width or spec.width, spec.full_height or spec.height
+    window = info.overscan if request.overscan and info.overscan else (0, 0, width, height)
+    array = _place_in_window(array, find_data_window(spec), window)
     array = np.ascontiguousarray(_turn_upright(array, read_orientation(spec)))
     return Pixels(array, array.dtype == np.float16, repaired, warning)
 
@@ -177,18 +182,18 @@ def _repair(array: Array, is_color: bool) -> tuple[Array, int]:
     return np.where(nan, array.dtype.type(0.0), array), int(nan.any(axis=2).sum())
 
 
-def _place_in_display_window(array: Array, spec: oiio.ImageSpec) -> Array:
-    """The data window placed in the display window; what lies outside is cut off."""
-    width, height = spec.full_width or spec.width, spec.full_height or spec.height
-    x, y = spec.x - spec.full_x, spec.y - spec.full_y
-    if (x, y, spec.width, spec.height) == (0, 0, width, height):
+def _place_in_window(array: Array, data_window: PixelRectangle, window: PixelRectangle) -> Array:
+    """The data window placed in another rectangle; what lies outside is cut off."""
+    if data_window == window:
         return array
-    window = np.zeros((height, width, array.shape[2]), array.dtype)
-    rows = slice(max(y, 0), min(y + spec.height, height))
-    columns = slice(max(x, 0), min(x + spec.width, width))
+    (x, y, width, height), (left, top, wide, high) = data_window, window
+    x, y = x - left, y - top
+    placed = np.zeros((high, wide, array.shape[2]), array.dtype)
+    rows = slice(max(y, 0), min(y + height, high))
+    columns = slice(max(x, 0), min(x + width, wide))
     if rows.start < rows.stop and columns.start < columns.stop:
-        window[rows, columns] = array[rows.start - y : rows.stop - y, columns.start - x : columns.stop - x]
-    return window
+        placed[rows, columns] = array[rows.start - y : rows.stop - y, columns.start - x : columns.stop - x]
+    return placed
 
 
 def _turn_upright(array: Array, orientation: int) -> Array:

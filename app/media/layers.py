@@ -12,6 +12,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from ..errors import InputError
+from ..resources.picture import PixelRectangle
 
 _BEAUTY_NAMES = ("combined", "beauty", "rgba", "rgb", "c", "ci")
 """Names that renderers give the picture itself, the usual one first."""
@@ -51,7 +52,9 @@ class ImageInfo(Struct, frozen=True):
     """The facts of a file's header that rendering needs.
 
     `size` is the display window, upright; `fingerprint` changes when the file does. `by_rows` is True if single rows
-    can be read: pixels are stored upright, over the whole window, and not as one stream.
+    can be read: pixels are stored upright, over the whole window, and not as one stream. `overscan` is the rectangle
+    (x, y, width, height) of the display window, whose top left pixel is 0, and of all pixels around it; None where
+    there are none.
     """
 
     path: str
@@ -60,6 +63,7 @@ class ImageInfo(Struct, frozen=True):
     fingerprint: str
     format: str
     by_rows: bool = False
+    overscan: PixelRectangle | None = None
 
 
 def find_layer(info: ImageInfo, name: str, suggest: Callable[[str], list[str]] | None = None) -> Layer:

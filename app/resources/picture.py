@@ -9,6 +9,13 @@ from msgspec import field
 
 from .record import Record
 
+MAX_OVERSCAN = 2.0
+"""The largest overscan in heights of the frame. A picture of 16:9 then has eleven times the pixels of its frame, if
+somebody reads them all. Chosen by judgement: plates and renders are made with a tenth, rarely with a half."""
+
+PixelRectangle = tuple[int, int, int, int]
+"""A rectangle of pixels: x, y, width and height. The top left pixel of a frame is (0, 0)."""
+
 
 class Picture(Record, frozen=True):
     """Pixels from outside: a layer of a file, or an array bound to an input (then `path` is the input's name).
@@ -17,7 +24,7 @@ class Picture(Record, frozen=True):
     compiler never looks at: a plan has all that it needs to run. `space` is what color in a file is in, "" to find out;
     `color` says how colors are managed. With a folder `within` the file must lie in it, links followed. Rows of it can
     be read alone if it is `by_rows`; `rows` are those that are read, the first and the one after the last, None
-    for all.
+    for all. With `overscan`, pixels around its frame are read as well, where a file has them.
     """
 
     path: str
@@ -32,5 +39,6 @@ class Picture(Record, frozen=True):
     within: str = ""
     by_rows: bool = False
     rows: tuple[int, int] | None = None
+    overscan: bool = False
 
     compare_exclude: ClassVar[frozenset[str]] = frozenset({"pixels"})

@@ -10,7 +10,7 @@ from msgspec import Struct
 
 from .color_program import ColorProgram
 from .mesh import Mesh
-from .picture import Picture
+from .picture import Picture, PixelRectangle
 from .working_space import WorkingSpace
 
 
@@ -22,6 +22,8 @@ class PictureProbe(Struct, frozen=True):
     fingerprint: str
     by_rows: bool = False
     """Whether rows of it can be read alone."""
+    overscan: PixelRectangle | None = None
+    """Its frame and all pixels that it has around it; None where there are none."""
 
 
 class FrameFile(Struct, frozen=True):

@@ -120,6 +120,11 @@ class Draw(Protocol):
         """The first frame of the graph, from which time counts."""
         ...
 
+    @property
+    def overscan(self) -> int:
+        """How many pixels beyond its frame a picture may be drawn, on each side."""
+        ...
+
     def size_of(self, pixels: Pixels) -> Size:
         """The size of an input or of a drawn picture."""
         ...

@@ -26,6 +26,8 @@ class Trait(StrEnum):
     """It converts color. Its values decide whether scene light or display light comes out."""
     RESAMPLES = "resamples"
     """It filters the picture: two such nodes in a row cost sharpness and time."""
+    WARPS = "warps"
+    """It shows pixels of the picture at other places, so that with overscan the result goes on beyond the frame."""
     CUTS_OUT = "cuts out"
     """Its result is a part of the picture, in pixels of the same size. Lengths after it follow the whole picture."""
     KEEPS_NON_FINITE = "keeps non-finite"

@@ -1,7 +1,7 @@
 import math
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Slider, Trait
 
 
 class Bulge(Filter):
@@ -15,6 +15,7 @@ class Bulge(Filter):
     aliases = (
         "spherize", "pinch", "fish eye", "fisheye", "magnify", "dent", "punch", "cc lens", "warp", "liquify", "squeeze",
     )  # fmt: skip
+    traits = (Trait.WARPS,)
 
     image = Image()
     out = OutputSocket(follows="image")

@@ -1,7 +1,7 @@
 import math
 from typing import Annotated, Literal
 
-from .._declare import Dial, Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
+from .._declare import Dial, Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider, Trait
 
 
 class ChromaticAberration(Filter):
@@ -16,6 +16,7 @@ class ChromaticAberration(Filter):
         "ca", "color fringe", "fringing", "rgb split", "lateral color", "dispersion", "prism", "channel offset",
         "rgb shift", "lens aberration",
     )  # fmt: skip
+    traits = (Trait.WARPS,)
 
     image = Image()
     shape: Annotated[

@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Trait
 
 
 class CornerPin(Filter):
@@ -13,6 +13,7 @@ class CornerPin(Filter):
         "corner pin", "cornerpin", "corner positioner", "four point", "perspective", "power pin", "screen replacement",
         "quad warp", "homography", "plane track", "distort corners", "keystone", "unpin", "card",
     )  # fmt: skip
+    traits = (Trait.WARPS,)
 
     image = Image()
     out = OutputSocket(follows="image")

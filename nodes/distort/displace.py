@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Slider, Trait, Vector
 
 
 class Displace(Filter):
@@ -13,6 +13,7 @@ class Displace(Filter):
         "idistort", "displacement map", "displacement", "vector distort", "warp", "distort", "vector warp", "push",
         "refract", "normal map distort",
     )  # fmt: skip
+    traits = (Trait.WARPS,)
 
     image = Image()
     out = OutputSocket(follows="image")

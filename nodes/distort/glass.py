@@ -1,7 +1,7 @@
 import math
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Slider, Trait
 
 
 class Glass(Filter):
@@ -13,6 +13,7 @@ class Glass(Filter):
     """
 
     aliases = ("cc glass", "refraction", "frosted glass", "ribbed glass", "fluted glass", "window", "glass distort")
+    traits = (Trait.WARPS,)
 
     image = Image()
     surface = Field(0.0, doc="How high the glass is, 0 to 1. Without a link, random bumps.")

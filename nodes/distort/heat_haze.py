@@ -1,7 +1,7 @@
 import math
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, OutputSocket, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, OutputSocket, Slider, Trait
 
 
 class HeatHaze(Filter):
@@ -12,6 +12,7 @@ class HeatHaze(Filter):
     """
 
     aliases = ("heat distortion", "haze", "hot air", "shimmer", "air distortion", "mirage")
+    traits = (Trait.WARPS,)
 
     image = Image()
     out = OutputSocket(follows="image")

@@ -2,7 +2,21 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Kernel, OutputSocket, Position, Reach, Resampling, Slider
+from .._declare import (
+    Doc,
+    Draw,
+    Drawn,
+    Edge,
+    Filter,
+    Image,
+    Kernel,
+    OutputSocket,
+    Position,
+    Reach,
+    Resampling,
+    Slider,
+    Trait,
+)
 
 _ENDLESS = 1e9
 
@@ -30,6 +44,7 @@ class LensDistortion(Filter):
         "lens distort", "undistort", "optics compensation", "barrel", "pincushion", "fish eye", "fisheye",
         "lens correction", "st map lens", "distort lens", "movie distortion", "wide angle",
     )  # fmt: skip
+    traits = (Trait.WARPS,)
 
     image = Image()
     out = OutputSocket(follows="image")
@@ -66,7 +81,9 @@ class LensDistortion(Filter):
     def passes(self, draw: Draw) -> Drawn:
         center = (self.center[0] * draw.size[0], self.center[1] * draw.size[1])
         x, y = (max(abs(at), abs(side - at)) / self.focal for at, side in zip(center, draw.size, strict=True))
-        far, moved = self._bounds(x / self.zoom, y / self.zoom)
+        _, moved = self._bounds(x / self.zoom, y / self.zoom)
+        beyond = draw.overscan / self.focal
+        far, _ = self._bounds((x + beyond) / self.zoom, (y + beyond) / self.zoom)
         overlap = None
         if moved is not None:
             part, reach = 1.0 / self.zoom, math.ceil(moved * self.focal + 1.0 / self.zoom) + _REACH[self.kernel]

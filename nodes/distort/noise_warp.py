@@ -1,7 +1,7 @@
 import math
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, OutputSocket, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, OutputSocket, Slider, Trait, Vector
 
 
 class NoiseWarp(Filter):
@@ -16,6 +16,7 @@ class NoiseWarp(Filter):
         "turbulent displace", "turbulence", "wiggle", "liquid", "fluid warp", "distort by noise", "rough edges",
         "roughen edges", "wave", "warp",
     )  # fmt: skip
+    traits = (Trait.WARPS,)
 
     image = Image()
     out = OutputSocket(follows="image")

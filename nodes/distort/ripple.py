@@ -1,7 +1,7 @@
 import math
 from typing import Annotated, Literal
 
-from .._declare import Dial, Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Slider
+from .._declare import Dial, Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Slider, Trait
 
 
 class Ripple(Filter):
@@ -14,6 +14,7 @@ class Ripple(Filter):
     aliases = (
         "wave warp", "wave", "water", "drip", "ripple pulse", "cc ripple pulse", "radio waves", "waves", "sine warp",
     )  # fmt: skip
+    traits = (Trait.WARPS,)
 
     image = Image()
     out = OutputSocket(follows="image")

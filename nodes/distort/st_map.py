@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Vector
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Trait, Vector
 
 
 class StMap(Filter):
@@ -14,6 +14,7 @@ class StMap(Filter):
         "stmap", "uv map", "map uv", "uv lookup", "texture lookup", "remap", "uv remap", "warp by uv", "coordinates",
         "texture",
     )  # fmt: skip
+    traits = (Trait.WARPS,)
 
     image = Image()
     out = OutputSocket(follows="image")

@@ -1,7 +1,7 @@
 import math
 from typing import Annotated
 
-from .._declare import Dial, Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Slider
+from .._declare import Dial, Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Slider, Trait
 
 
 class Swirl(Filter):
@@ -12,6 +12,7 @@ class Swirl(Filter):
     """
 
     aliases = ("twirl", "vortex", "twist", "whirl", "spin", "spiral")
+    traits = (Trait.WARPS,)
 
     image = Image()
     out = OutputSocket(follows="image")

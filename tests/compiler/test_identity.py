@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 from halation.compiler import NULL
-from halation.compiler.areas import Neighborhood
+from halation.compiler.areas import Neighborhood, Region
 from halation.compiler.fusion.fuse import PassGroup
 from halation.compiler.ir import (
     Accessor,
@@ -18,6 +18,7 @@ from halation.compiler.ir import (
     Choice,
     ColorCall,
     Convolve,
+    Crop,
     ExternalProgram,
     FormulaCall,
     FunctionOp,
@@ -66,10 +67,11 @@ TEXT = ShaderText(ShaderStage("head", "text", "tail", "a.fs"), ShaderStage("head
 SPECIMENS: dict[type[Op], Op] = {
     type(op): op
     for op in (
-        Read(SHAPES, "n", PICTURE, "fingerprint", half=False),
+        Read(SHAPES, "n", PICTURE, "fingerprint", half=False, data_window=Region(-1, -1, 6, 5)),
         HistoryRead(SHAPES, "n", "key", half=False),
         StoredResult(SHAPES, "n", (PICTURE,), (False,), ("key",)),
         Call(SHAPES, "n", "color/exposure", "exposure", PARAMETERS, CHOICES),
+        Crop(SHAPES, "n", "primitive/convert", "as_vec4", PARAMETERS, CHOICES),
         ColorCall(SHAPES, "n", "color", "color_change", PARAMETERS, CHOICES, program=PROGRAM),
         FormulaCall(SHAPES, "n", "merge/pixel_formula", "formula_1", PARAMETERS, CHOICES, program=PROGRAM),
         Gather(SHAPES, "n", "edge/edge", "edge", PARAMETERS[1:], CHOICES, accessors=ACCESSORS),

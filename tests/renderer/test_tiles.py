@@ -246,7 +246,7 @@ def test_only_the_rows_that_are_looked_at_are_read(by_rows, asked):
     picture = Picture("a.exr", "", Kind.IMAGE, 4, by_rows=True)
     cache = PictureCache(load, by_rows=by_rows)
     for window in (Region(5, 10, 20, 20), Region(0, 15, 60, 10), Region(7, 25, 9, 15), None):
-        part = cache.read(Upload(0, picture, "n", (60, 50)), window).picture.pixels
+        part = cache.read(Upload(0, picture, "n", Region(0, 0, 60, 50)), window).picture.pixels
         whole = window is None or not by_rows
         cut = pixels if whole else pixels[window.y : window.y + window.height, window.x : window.x + window.width]
         np.testing.assert_array_equal(part, cut)

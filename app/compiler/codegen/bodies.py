@@ -34,7 +34,13 @@ def write_accessor(names: ShaderNames, item: Accessor, edge: Edge) -> list[str]:
     if isinstance(item.operand, Ref):
         size = names.shape(item.operand).size
         names.uniform("ivec2", size, f"{name}_size")
-        if edge == "black":
+        extent = names.program.extents.get(item.operand)
+        if extent and edge in ("clamp", "black"):
+            first = names.uniform("ivec2", extent.start, f"{name}_first")
+            room = names.uniform("ivec2", extent.size, f"{name}_room")
+            value = names.load_as(item.operand, f"edge_clamp(p - {first}, {room}) + {first}", glsl)
+            value = f"inside(p - {first}, {room}) ? {value} : {glsl}(0.0)" if edge == "black" else value
+        elif edge == "black":
             value = names.load_as(item.operand, f"edge_clamp(p, {name}_size)", glsl)
             value = f"inside(p, {name}_size) ? {value} : {glsl}(0.0)"
         else:

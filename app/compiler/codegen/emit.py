@@ -117,13 +117,12 @@ def _(root: HostCall, request: _PassRequest) -> EmittedProgram:
 
 
 def _name_windows(names: ShaderNames, group: PassGroup) -> None:
-    """Declare the windows of pictures of which only a part is on the device."""
-    windows = names.program.windows
+    """Declare the windows of pictures of which something else than the frame is on the device."""
     for number, ref in enumerate(group.reads):
-        if ref in windows:
-            names.uniform("ivec2", windows[ref].start, f"t{number}_start")
-    if group.writes[0] in windows:
-        names.declare_window(windows[group.writes[0]])
+        if window := names.program.window(ref):
+            names.uniform("ivec2", window.start, f"t{number}_start")
+    if window := names.program.window(group.writes[0]):
+        names.declare_window(window)
 
 
 def _write_preamble(target: Target) -> list[str]:

@@ -27,13 +27,16 @@ class ShaderNames(Struct):
     seams: bool = True
     """Whether fused functions are kept apart: see primitive/settled.glsl."""
 
+    written: Region | None = None
+    """The pixels that are written, where they are not those of a frame."""
     start: str = ""
     """The uniform with the first pixel that is written, if only a window of the picture is."""
     room: str = "grid"
     """The uniform with the size of what is written."""
 
     def declare_window(self, region: Region) -> None:
-        """Write only a region of the picture."""
+        """Write a region: a part of the picture, or more than its frame."""
+        self.written = region
         self.start = self.uniform("ivec2", region.start, "window_start")
         self.room = self.uniform("ivec2", region.size, "window_size")
 
@@ -51,10 +54,20 @@ class ShaderNames(Struct):
         shape = self.shape(ref)
         where = "ivec2(0)" if shape.size == (1, 1) else where
         name = f"t{self.textures[ref]}"
-        if ref in self.program.windows:
+        if self.program.window(ref):
             where = f"{where} - {name}_start"
         call = f"imageLoad({name}, {where})" if self.by_image else f"texelFetch({name}, {where}, 0)"
         return call + ("", ".r", ".rg", ".rgb", "")[shape.channels]
+
+    def load_own(self, ref: Ref) -> str:
+        """The expression that reads the pixel that is made: 0 where a picture ends before the one that is written."""
+        window = self.program.window(ref) or Region.whole(self.shape(ref).size)
+        text = self.load(ref, "pixel")
+        if self.written is None or window.size == (1, 1) or window.contains(self.written):
+            return text
+        corners = self.uniform("ivec4", (*window.start, window.across[1], window.down[1]))
+        guard = f"all(greaterThanEqual(pixel, {corners}.xy)) && all(lessThan(pixel, {corners}.zw))"
+        return f"({guard} ? {text} : {glsl_type(self.shape(ref).channels)}(0.0))"
 
     def load_as(self, ref: Ref, where: str, glsl: str) -> str:
         """The expression that reads one pixel as another type."""

@@ -164,7 +164,8 @@ def _write_calls(context: PassContext) -> tuple[list[str], dict[Ref, str]]:
         if ref not in loaded:
             continue
         values[ref] = f"a{number}"
-        lines.append(f"{glsl_type(names.shape(ref).channels)} a{number} = {names.load(ref, 'pixel')};")
+        loaded_pixel = names.load_own(ref) if context.root.is_pointwise else names.load(ref, "pixel")
+        lines.append(f"{glsl_type(names.shape(ref).channels)} a{number} = {loaded_pixel};")
     for number, index in enumerate(group.members):
         op = context.program.ops[index]
         if not isinstance(op, FunctionOp):

@@ -71,7 +71,7 @@ def fuse(
             joined = _join_reads(reads[root], outputs, op)
             floats = uniforms[root] + op.uniform_floats
             inputs = len(joined) + tables[root] + len(op.tables)
-            if floats <= MAX_UNIFORMS and _fits(ops, op, members[root], inputs, target):
+            if floats <= MAX_UNIFORMS and _fits(program, index, members[root], inputs, target):
                 roots_by_op[index] = root
                 uniforms[root] = floats
                 tables[root] += len(op.tables)
@@ -123,9 +123,11 @@ def count_tables(ops: tuple[Op, ...], members: Iterable[int]) -> int:
     return sum(len(ops[index].tables) for index in members)
 
 
-def _fits(ops: tuple[Op, ...], op: Op, members: list[int], inputs: int, target: Target) -> bool:
-    """Whether `op` can be part of the pass that these are members of, the root first."""
-    reader = ops[members[0]]
+def _fits(program: LoweredProgram, index: int, members: list[int], inputs: int, target: Target) -> bool:
+    """Whether an operation can be part of the pass that these are members of, the root first."""
+    ops, op, reader = program.ops, program.ops[index], program.ops[members[0]]
+    if reader.is_pointwise and not program.end_alike(index, members[0]):
+        return False
     if not reader.takes_producers or not (reader.is_pointwise or op.is_pointwise):
         return False
     same_size = reader.find_producer_size(ops) == op.size

@@ -138,7 +138,8 @@ class _PassMerger:
                 yield from (reader for reader in latest if reader != number and self._can_pair(group, reader))
 
     def _can_pair(self, group: _MergeCandidate, partner: int) -> bool:
-        return self.groups[partner].open and self.groups[partner].size == group.size
+        other = self.groups[partner]
+        return other.open and other.size == group.size and self.program.end_alike(group.members[-1], other.members[-1])
 
     def _merge_pair(self, first: int, last: int) -> _MergeCandidate | None:
         """Two groups merged into one, if there is a place where it can run."""

@@ -65,7 +65,9 @@ def _can_compute(program: LoweredProgram, reader: PassGroup, ref: Ref) -> bool:
     root, size = program.ops[reader.root], program.shape(ref).size
     if not root.takes_producers or size != root.find_producer_size(program.ops):
         return False
-    return not root.is_pointwise or not looks_around(program.ops, reader, ref)
+    if not root.is_pointwise:
+        return True
+    return program.end_alike(reader.root, ref.op) and not looks_around(program.ops, reader, ref)
 
 
 def _merge_into_reader(program: LoweredProgram, group: PassGroup, reader: PassGroup) -> PassGroup:

@@ -75,14 +75,17 @@ class Op(Record, frozen=True):
         """True if it may read a picture, of this size, anywhere, whatever region of its own pixels is made."""
         return False
 
-    def footprint(self, ref: Ref, size: Size, region: Region) -> Region:
-        """The region of a picture that it reads to make a `region` of its own pixels. `size` is that of the picture."""
-        if size == (1, 1) or self.reads_whole(ref, size):
-            return Region.whole(size)
-        return self._find_footprint(ref, size, region)
+    def footprint(self, ref: Ref, size: Size, region: Region, kept: Region) -> Region:
+        """The region of a picture that it reads to make a `region` of its own pixels.
 
-    def _find_footprint(self, ref: Ref, size: Size, region: Region) -> Region:
-        return Region.whole(size)
+        `size` is that of the picture's frame, and `kept` all of the picture, which may be larger.
+        """
+        if size == (1, 1) or self.reads_whole(ref, size):
+            return kept
+        return self._find_footprint(ref, size, region, kept)
+
+    def _find_footprint(self, ref: Ref, size: Size, region: Region, kept: Region) -> Region:
+        return kept
 
     def find_producer_size(self, ops: Sequence[Op]) -> Size:
         """The size of pictures that its pass can compute, if it takes producers."""

@@ -41,6 +41,8 @@ class Read(SourceOp, frozen=True):
     picture: Picture
     fingerprint: str
     half: bool
+    data_window: Region | None = None
+    """The pixels that the file has, where they are more than the frame."""
 
     def find_upload(self, output: int) -> Picture:
         return self.picture
@@ -149,14 +151,18 @@ class Call(FunctionOp, frozen=True):
     def reads_whole(self, ref: Ref, size: Size) -> bool:
         return size != self.size
 
-    def _find_footprint(self, ref: Ref, size: Size, region: Region) -> Region:
-        return region
+    def _find_footprint(self, ref: Ref, size: Size, region: Region, kept: Region) -> Region:
+        return clip_region(region.across, region.down, size, "clamp", kept)
 
     def is_straight(self, library: Library) -> bool:
         return library.is_straight(self.shader, self.function, self.owner)
 
     def is_cheap(self, library: Library) -> bool:
         return library.is_cheap(self.shader, self.function, self.owner)
+
+
+class Crop(Call, frozen=True):
+    """A copy of a picture that ends at its frame."""
 
 
 class ColorCall(Call, frozen=True, kw_only=True):
@@ -197,8 +203,13 @@ class Gather(FunctionOp, frozen=True, kw_only=True):
     edge: Edge = "clamp"
     light: bool = False
     """Cheap enough to be computed within the pass that reads it: see `Library.light`."""
+    warps: bool = False
+    """Shows pixels of its picture at other places, which are known for the frame alone."""
 
-    identity_exclude: ClassVar[Mapping[str, str]] = {"light": "it decides in which pass pixels are made, not which"}
+    identity_exclude: ClassVar[Mapping[str, str]] = {
+        "light": "it decides in which pass pixels are made, not which",
+        "warps": "it decides where a picture ends, which the key of its pass says",
+    }
 
     @property
     def files(self) -> tuple[str, ...]:
@@ -219,14 +230,16 @@ class Gather(FunctionOp, frozen=True, kw_only=True):
     def reads_whole(self, ref: Ref, size: Size) -> bool:
         return any(item.operand == ref and item.around is None for item in self.accessors)
 
-    def _find_footprint(self, ref: Ref, size: Size, region: Region) -> Region:
+    def _find_footprint(self, ref: Ref, size: Size, region: Region, kept: Region) -> Region:
+        if self.warps and not Region.whole(self.size).contains(region):
+            return kept
         footprint: Region | None = None
         for item in self.accessors:
             if item.operand == ref and item.around is not None:
                 across, down = item.around.find_spans(region)
-                part = clip_region(across, down, size, self.edge)
+                part = clip_region(across, down, size, self.edge, kept)
                 footprint = footprint.union(part) if footprint else part
-        return footprint or Region.whole(size)
+        return footprint or kept
 
     def is_straight(self, library: Library) -> bool:
         return self.light
@@ -278,14 +291,14 @@ class Convolve(Op, frozen=True):
     def reads(self) -> Iterator[Ref]:
         return iter((self.image,))
 
-    def _find_footprint(self, ref: Ref, size: Size, region: Region) -> Region:
+    def _find_footprint(self, ref: Ref, size: Size, region: Region, kept: Region) -> Region:
         spans = [region.across, region.down]
         first, end = spans[self.axis]
         spans[self.axis] = (
             first * self.stride + self.origin,
             (end - 1) * self.stride + self.origin + len(self.weights),
         )
-        return clip_region(spans[0], spans[1], size, self.edge)
+        return clip_region(spans[0], spans[1], size, self.edge, kept)
 
     def without_numbers(self) -> Convolve:
         return replace(self, weights=(), origin=0)
@@ -309,7 +322,7 @@ class Reduce(Op, frozen=True):
     def find_producer_size(self, ops: Sequence[Op]) -> Size:
         return ops[self.image.op].shapes[self.image.output].size
 
-    def _find_footprint(self, ref: Ref, size: Size, region: Region) -> Region:
+    def _find_footprint(self, ref: Ref, size: Size, region: Region, kept: Region) -> Region:
         return Region.of(_find_blocks(region.across, size[0]), _find_blocks(region.down, size[1]))
 
 

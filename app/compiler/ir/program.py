@@ -58,6 +58,10 @@ class LoweredProgram(Struct, frozen=True):
     """The cameras that inputs of nodes were given."""
     scale: float
     frame: int
+    data_windows: Mapping[Ref, Region] = field(default_factory=lambda: MappingProxyType({}))
+    """The pixels that there are of pictures that go on beyond their frame: see `data_windows`."""
+    extents: Mapping[Ref, Region] = field(default_factory=lambda: MappingProxyType({}))
+    """The pixels of them that are made, where they are more than the frame."""
     windows: Mapping[Ref, Region] = field(default_factory=lambda: MappingProxyType({}))
     """The parts of pictures that are made or read, of those that are not whole on the device."""
 
@@ -66,9 +70,26 @@ class LoweredProgram(Struct, frozen=True):
         """The pictures that must be there at the end: outputs, and what the next frame reads."""
         return (*self.outputs.values(), *self.memories.values())
 
+    def data_window(self, ref: Ref) -> Region:
+        """The pixels that there are of a picture, at least its frame."""
+        return self.data_windows.get(ref) or Region.whole(self.shape(ref).size)
+
+    def end_alike(self, first: int, second: int) -> bool:
+        """True if the pictures of two operations of one size have the same data window."""
+        return not self.data_windows or self.data_windows.get(Ref(first)) == self.data_windows.get(Ref(second))
+
+    def extent(self, ref: Ref) -> Region:
+        """The pixels that are made of a picture if all outputs are, at least its frame."""
+        return self.extents.get(ref) or Region.whole(self.shape(ref).size)
+
+    def window(self, ref: Ref) -> Region | None:
+        """The pixels of a picture that are on the device; None for its frame."""
+        return self.windows.get(ref) or self.extents.get(ref)
+
     def size_on_device(self, ref: Ref) -> Size:
         """How many pixels of a picture are on the device."""
-        return self.windows[ref].size if ref in self.windows else self.shape(ref).size
+        window = self.window(ref)
+        return window.size if window else self.shape(ref).size
 
     def shape(self, ref: Ref) -> PictureShape:
         """The size and channels of an output of an operation."""

@@ -30,6 +30,7 @@ from halation.nodes import (
     ShaderText,
     Size,
     Socket,
+    Trait,
     Uniform,
     Vector,
     glsl_type,
@@ -38,6 +39,7 @@ from msgspec.structs import replace
 
 from ...errors import ShaderError
 from ...glsl import GlslFunction
+from ...graph import Settings
 from ...resources.picture import Picture
 from ..areas import Neighborhood
 from ..ir import (
@@ -84,18 +86,17 @@ class Recorder:
         library: Library,
         resources: NodeResources,
         memories: Mapping[str, Memory],
-        rate: float,
-        start: int,
+        settings: Settings,
     ) -> None:
-        self.size, self.rate, self.start = size, rate, start
+        self.size, self.rate, self.start = size, settings.rate, (settings.frames or (1, 1))[0]
+        self.overscan = math.ceil(settings.overscan * size[1])
         self.reads_frame = False
         """Whether the node asked for the frame."""
         self.typeset, self.expand_text = resources.typeset, partial(resources.expand_text, self)
-        self._owner, self._inputs, self._node = inputs.path, inputs, node
+        self._owner, self._inputs, self._node, self._shader = inputs.path, inputs, node, node.shader
         self._builder, self._library, self._resources = builder, library, resources
         self._blurs = BlurBuilder(builder, library, inputs.path)
         self._memories = memories
-        self._shader = node.shader
         self.remembered: dict[str, Ref] = {}
 
     @property
@@ -190,6 +191,7 @@ class Recorder:
             accessors=tuple(accessors),
             edge=edge,
             light=light,
+            warps=Trait.WARPS in self._node.traits,
         )
 
     def point(self, function: str, /, *inputs: Socket, result: Socket | None = None, **arguments: Argument) -> Drawn:

@@ -351,7 +351,6 @@ class NodeLowering:
             if name == inputs.narrow:
                 continue
             inputs.at_frames[name, frame] = self._convert_to_pixels(path, node.inputs[name], operand, size)
-        settings = context.graph.settings
         missing = self.choose_missing(inputs.node.missing if isinstance(inputs.node, Reader) else "error", inputs.frame)
         recorder = Recorder(
             inputs,
@@ -361,8 +360,7 @@ class NodeLowering:
             context.library,
             self._pictures.collect_resources(inputs, missing),
             self._find_memories(path, step) if remembers else {},
-            settings.rate,
-            (settings.frames or (1, 1))[0],
+            context.graph.settings,
         )
         pictures = node.passes(recorder)
         step.memories = {Port(path, name): ref for name, ref in recorder.remembered.items()}

@@ -27,7 +27,7 @@ from ...resources.mesh import Mesh
 from ...resources.picture import Picture
 from ...resources.provider import FrameFile, PictureProbe, ResourceProvider
 from ...resources.today import read_date
-from ..areas import Neighborhood, scale_size
+from ..areas import Neighborhood, Region, scale_size
 from ..ir import Accessor, Builder, Call, Gather, Operand, Parameter, PictureShape, Read, Ref, UniformConstant
 from ..request import Request
 from .expand import FlatGraph, make_zero
@@ -48,6 +48,7 @@ class PictureBuilder:
         self.named, self._flat = ReferencedPictures(flat, request.bindings), flat
         self._graph_size = graph.settings.size
         self._color = color_settings(graph)
+        self._overscan = graph.settings.overscan > 0.0
         self._request, self._provider, self._builder = request, provider, builder
         self.canvas_is_read = False
         """Whether the canvas has been asked for."""
@@ -96,8 +97,9 @@ class PictureBuilder:
             return self.convert(UniformConstant(make_zero(socket)), socket, size, owner)
         # A bound array is identified by its fingerprint. Only the request refers to the array, so that plans that are
         # kept for later do not keep it in memory.
-        picture = replace(picture, pixels=None, by_rows=probed.by_rows)
-        ref = self._builder.add(Read((shape,), owner, picture, probed.fingerprint, probed.half))
+        window = Region(*probed.overscan) if self._overscan and probed.overscan else None
+        picture = replace(picture, pixels=None, by_rows=probed.by_rows, overscan=window is not None)
+        ref = self._builder.add(Read((shape,), owner, picture, probed.fingerprint, probed.half, window))
         return self.fit(ref, size, owner)
 
     def read_asset(self, picture: Picture, owner: str) -> Ref:

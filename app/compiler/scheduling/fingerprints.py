@@ -117,5 +117,6 @@ def update_keys(
 
 
 def _describe_window(program: LoweredProgram, ref: Ref) -> tuple[object, ...]:
-    """Which part of a picture it is, where it is not whole."""
-    return (program.windows[ref],) if ref in program.windows else ()
+    """Which part of a picture it is, where it is not its frame; and how far it goes on, where it does."""
+    window, extent = program.window(ref), program.extents.get(ref)
+    return (window, extent) if extent else (window,) if window else ()

@@ -11,9 +11,10 @@ from msgspec.structs import replace
 
 from ...errors import DeviceError, describe_owner
 from ...graph import Port
+from ..areas import Region
 from ..codegen.emit import EmittedProgram, emit
 from ..fusion.fuse import PassGroup
-from ..ir import HostCall, LoweredProgram, Memory, Op, Ref, SourceOp
+from ..ir import HostCall, LoweredProgram, Memory, Op, Read, Ref, SourceOp
 from ..library import Library
 from ..plan import Depth, HostTask, Pass, Plan, Surface, Upload, texture_bytes, texture_format
 from ..target import Precision, Target
@@ -64,7 +65,7 @@ def schedule(
             slots[ref],
             first[ref],
             last[ref],
-            program.windows.get(ref),
+            program.window(ref),
             program.shape(ref).data,
         )
         for ref in needed
@@ -254,7 +255,9 @@ def _find_uploads(program: LoweredProgram, numbers: Mapping[Ref, int]) -> list[U
         op = program.ops[ref.op]
         picture = op.find_upload(ref.output)
         if picture is not None:
-            uploads.append(Upload(number, picture, op.owner, program.shape(ref).size))
+            frame = Region.whole(program.shape(ref).size)
+            whole = op.data_window if isinstance(op, Read) else None
+            uploads.append(Upload(number, picture, op.owner, whole or frame))
     return uploads
 
 

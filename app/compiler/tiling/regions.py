@@ -11,7 +11,7 @@ from types import MappingProxyType
 
 from msgspec.structs import replace
 
-from ..areas import Region, clip_span
+from ..areas import Region, clip_region
 from ..fusion.fuse import PassGroup
 from ..ir import LoweredProgram, Ref
 
@@ -24,8 +24,8 @@ def find_regions(
 ) -> dict[Ref, Region]:
     """The region of every texture of these passes from which the `requested` regions can be made.
 
-    A pass makes the same region of all pictures that it writes. Those in `cached_refs` stay whole, and so does
-    everything upstream of them, because their keys are those of whole pictures.
+    It lies in the data window of its picture. A pass makes the same region of all pictures that it writes. Those in
+    `cached_refs` stay whole, and so does everything upstream of them, because their keys are those of whole pictures.
     """
     regions = dict(requested)
     for fused in reversed(passes):
@@ -35,13 +35,10 @@ def find_regions(
         is_there = all(ref in cached_refs for ref in written)
         size = program.shape(written[0]).size
         whole = is_there or any(program.ops[index].is_indivisible for index in fused.members)
-        region = Region.whole(size) if whole else _unite([regions[ref] for ref in written])
-        regions |= {
-            ref: region if program.shape(ref).size == size else Region.whole(program.shape(ref).size)
-            for ref in fused.writes
-        }
+        region = program.extent(written[0]) if whole else _unite([regions[ref] for ref in written])
+        regions |= {ref: region if program.shape(ref).size == size else program.extent(ref) for ref in fused.writes}
         for ref, part in _find_reads(program, fused, region).items():
-            part = Region.whole(program.shape(ref).size) if is_there else part
+            part = program.extent(ref) if is_there else part
             regions[ref] = regions[ref].union(part) if ref in regions else part
     return regions
 
@@ -55,17 +52,15 @@ def focus_program(
     """
     requested: dict[Ref, Region] = {}
     for ref in program.outputs.values():
-        width, height = program.shape(ref).size
-        requested[ref] = Region.of(clip_span(region.across, width, "clamp"), clip_span(region.down, height, "clamp"))
+        kept = program.data_window(ref)
+        requested[ref] = clip_region(region.across, region.down, program.shape(ref).size, "clamp", kept)
     requested |= {ref: Region.whole(program.shape(ref).size) for ref in program.memories.values()}
     regions = find_regions(program, passes, requested, cached_refs)
     written = {ref for fused in passes for ref in fused.writes}
     whole_refs = {
         ref for ref in regions if ref not in written and (ref in cached_refs or program.ops[ref.op].is_memory)
     }
-    parts = {
-        ref: part for ref, part in regions.items() if ref not in whole_refs and part.size != program.shape(ref).size
-    }
+    parts = {ref: part for ref, part in regions.items() if ref not in whole_refs and part != program.extent(ref)}
     return replace(program, windows=MappingProxyType(parts))
 
 
@@ -76,7 +71,7 @@ def _find_reads(program: LoweredProgram, fused: PassGroup, region: Region) -> di
         op = program.ops[index]
         own = [inner[ref] for number in range(op.outputs) if (ref := Ref(index, number)) in inner]
         for ref in op.reads():
-            part = op.footprint(ref, program.shape(ref).size, _unite(own) if own else region)
+            part = op.footprint(ref, program.shape(ref).size, _unite(own) if own else region, program.data_window(ref))
             inner[ref] = inner[ref].union(part) if ref in inner else part
     return {ref: inner[ref] for ref in fused.reads}
 

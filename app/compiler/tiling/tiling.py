@@ -71,6 +71,11 @@ def plan_tiling(
         return None
     if program.windows:
         raise DeviceError(f"{why}: choose a smaller region")
+    if program.extents:
+        raise DeviceError(
+            f"{why}, and with overscan they cannot be made in parts: render smaller with --scale or --size, give more "
+            "with --memory, or set a smaller overscan in the settings of the graph"
+        )
     for ref in texels:
         if _count_pixels(program.shape(ref).size) > MAX_PIXELS:
             raise DeviceError(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from ...resources.input_files import check_file, fingerprint
 from ...resources.library_messages import quiet_libraries
 from ...resources.library_names import name_for_library
 from ...resources.machine import available_cores, has_memory_limit
+from ...resources.picture import MAX_OVERSCAN, PixelRectangle
 from ...resources.sandbox import Sandbox
 from ..channels import ChannelPart, group_channels
 from ..layers import ImageInfo
@@ -74,6 +76,7 @@ def describe_picture(picture: oiio.ImageInput, path: str, sandbox: Sandbox) -> I
     size = _upright_size(picture.spec())
     check_size(path, size)
     parts: list[ChannelPart] = []
+    windows: list[PixelRectangle] = []
     index, is_whole = 0, True
     while picture.seek_subimage(index, 0):
         spec = picture.spec()
@@ -82,11 +85,19 @@ def describe_picture(picture: oiio.ImageInput, path: str, sandbox: Sandbox) -> I
         if _upright_size(spec) == size:
             parts.append(_read_channels(index, spec))
             is_whole = is_whole and _is_whole(spec)
+            # Of a picture that a camera turned, only the display window is read.
+            windows.append(find_data_window(spec) if read_orientation(spec) == 1 else (0, 0, *size))
         index += 1
     picture.geterror()  # there is no further part
     format = picture.format_name()
     return ImageInfo(
-        path, size, group_channels(parts), fingerprint(path, sandbox=sandbox), format, is_whole and format in _BY_ROWS
+        path,
+        size,
+        group_channels(parts),
+        fingerprint(path, sandbox=sandbox),
+        format,
+        is_whole and format in _BY_ROWS,
+        find_overscan(size, windows),
     )
 
 
@@ -131,6 +142,24 @@ def _upright_size(spec: oiio.ImageSpec) -> Size:
     """Width and height of the display window, upright."""
     width, height = spec.full_width or spec.width, spec.full_height or spec.height
     return (height, width) if read_orientation(spec) > 4 else (width, height)
+
+
+def find_data_window(spec: oiio.ImageSpec) -> PixelRectangle:
+    """The data window as it is stored, counted from the top left pixel of the display window."""
+    return (spec.x - spec.full_x, spec.y - spec.full_y, spec.width, spec.height)
+
+
+def find_overscan(size: Size, windows: Sequence[PixelRectangle]) -> PixelRectangle | None:
+    """The smallest rectangle that holds the frame and data windows, as far as overscan goes; None for the frame."""
+    width, height = size
+    margin = math.ceil(MAX_OVERSCAN * height)
+    left, top = (min(0, *(max(window[axis], -margin) for window in windows)) for axis in (0, 1))
+    right, bottom = (
+        max(side, *(min(window[axis] + window[axis + 2], side + margin) for window in windows))
+        for axis, side in enumerate(size)
+    )
+    found = (left, top, right - left, bottom - top)
+    return None if found == (0, 0, width, height) else found
 
 
 def _is_whole(spec: oiio.ImageSpec) -> bool:

@@ -14,7 +14,7 @@ import numpy as np
 from msgspec import Struct
 from msgspec.structs import replace
 
-from ...compiler import FIRST_TABLE, MAX_WEIGHTS, Pass, Plan, Surface, Upload
+from ...compiler import FIRST_TABLE, MAX_WEIGHTS, Pass, Plan, Region, Surface, Upload
 from ...errors import HalationError, InputError, RenderError, describe_owner
 from ...resources.color_program import LookupTable
 from ...resources.mesh import Mesh
@@ -92,13 +92,14 @@ class Executor:
         """
         surface, pixels = plan.surfaces[upload.surface], decoded.pixels
         started = time.perf_counter()
-        size = (pixels.shape[1], pixels.shape[0])
-        if surface.window and size == upload.whole:
-            rows, columns = (slice(*span) for span in (surface.window.down, surface.window.across))
-            pixels = pixels[rows, columns]
+        size, whole = (pixels.shape[1], pixels.shape[0]), upload.whole
+        window = surface.window or Region.whole(surface.size)
+        if size == whole.size and window != whole:
+            top, left = window.y - whole.y, window.x - whole.x
+            pixels = pixels[top : top + window.height, left : left + window.width]
         elif size != surface.size:
             raise InputError(
-                f"{upload.picture.path}: it was {upload.whole[0]}x{upload.whole[1]} pixels when the rendering "
+                f"{upload.picture.path}: it was {whole.width}x{whole.height} pixels when the rendering "
                 f"began, and is {size[0]}x{size[1]} now; render again"
             )
         texture = self.write_pixels(surface, pixels, lease)

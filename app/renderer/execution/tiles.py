@@ -196,7 +196,7 @@ class _PictureCache:
         picture = upload.picture
         if picture.in_memory:
             return upload
-        everything = Region.whole(upload.whole)
+        everything = upload.whole
         window = window or everything
         rows = window.down if self._by_rows and picture.by_rows else everything.down
         (first, end), pixels = self._decoded.get(picture, ((0, 0), None))

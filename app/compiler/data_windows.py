@@ -1,0 +1,228 @@
+"""Pictures that go on beyond their frame.
+
+As in OpenEXR, a picture has a display window, its frame, and a data window: the pixels that there are. A graph whose
+settings have an `overscan` keeps data windows through all of its nodes: what a node moved out of the frame, or a
+renderer made around it, is still there for the next one. Without `overscan` every picture ends at its frame.
+
+A shader counts pixels from the top left one of the frame on, and sizes are those of the frame, whatever the data window
+is. So functions of nodes know nothing of it: they are evaluated at more pixels, some of them below 0.
+
+Three steps lead from a lowered program to what is made:
+
+1. `add_data_windows` goes from the inputs to the outputs. A file says its own data window, and a formula has pixels
+   everywhere. A function of one pixel has those of what it reads; noise over a picture ends where the picture does. A
+   blur that takes outside to be black grows the window, and a placement moves it by its matrix. Nodes that warp a
+   picture may show something of it everywhere. Nothing goes further than the overscan.
+2. Passes are found. Operations share one only if their data windows are the same, so no function is evaluated where its
+   inputs have ended, and its result is not 0.
+3. `add_extents` goes back from the outputs, which are the frame: of each picture only those pixels of the data window
+   are made that somebody reads. So overscan costs nothing where nothing is brought back.
+
+Reading beyond a data window is what it was at the frame: the edge mode says what is there. The modes that repeat a
+picture repeat its frame.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence, Set
+from functools import reduce, singledispatch
+from types import MappingProxyType
+
+from halation.nodes import Affine, Size, glsl_type
+from msgspec import Struct
+from msgspec.structs import replace
+
+from .areas import Neighborhood, Region
+from .fusion.fuse import PassGroup
+from .ir import Call, Convolve, Crop, Gather, LoweredProgram, Op, OpaqueProgram, Parameter, Placement, Read, Ref
+from .tiling.regions import find_regions
+
+_ROUNDING = 1e-6
+"""Pixels by which the edge of a data window may be off after a matrix in doubles, and still lie on a pixel's edge."""
+
+
+def add_data_windows(program: LoweredProgram, overscan: float) -> LoweredProgram:
+    """The program with the data windows of its pictures, which go `overscan` heights beyond the frame at most.
+
+    An output that others read beyond its frame gets a copy that ends there.
+    """
+    program = _crop_outputs(replace(program, data_windows=_find_data_windows(program, overscan)))
+    return replace(program, data_windows=_find_data_windows(program, overscan))
+
+
+def add_extents(program: LoweredProgram, passes: Sequence[PassGroup]) -> LoweredProgram:
+    """The program with the pixels that these passes make of each picture."""
+    if not program.data_windows:
+        return program
+    requested = {ref: Region.whole(program.shape(ref).size) for ref in program.kept_refs}
+    extents: dict[Ref, Region] = {}
+    for ref, region in find_regions(program, passes, requested).items():
+        frame = Region.whole(program.shape(ref).size)
+        if not frame.contains(region):
+            extents[ref] = frame.union(region)
+    return replace(program, extents=MappingProxyType(extents))
+
+
+def _find_data_windows(program: LoweredProgram, overscan: float) -> MappingProxyType[Ref, Region]:
+    """The data windows that are not the frame. All pictures of an operation have the same."""
+    ending = _find_ending(program)
+    known = _Pictures(program, windows := dict[Ref, Region](), boundless := set[int]())
+    for index, op in enumerate(program.ops):
+        if op.is_indivisible or index in ending or op.size == (1, 1):
+            continue
+        frame = Region.whole(op.size)
+        most = frame.grow(math.ceil(overscan * op.size[1]))
+        window = _find_window(op, known, most)
+        if window is None:
+            boundless.add(index)
+        window = most if window is None else frame.union(window).intersect(most)
+        if window != frame:
+            windows |= {Ref(index, output): window for output in range(op.outputs)}
+    return MappingProxyType(windows)
+
+
+class _Pictures(Struct, frozen=True):
+    """The data windows that were found so far; operations in `boundless` have pixels wherever they are asked for."""
+
+    program: LoweredProgram
+    windows: Mapping[Ref, Region]
+    boundless: Set[int]
+
+    def find_size(self, ref: Ref) -> Size:
+        return self.program.shape(ref).size
+
+    def find_window(self, ref: Ref) -> Region:
+        return self.windows.get(ref) or Region.whole(self.find_size(ref))
+
+    def is_bounded(self, ref: Ref) -> bool:
+        """False for numbers and other generated pictures, which end nowhere."""
+        return self.find_size(ref) != (1, 1) and ref.op not in self.boundless
+
+
+def _find_ending(program: LoweredProgram) -> set[int]:
+    """The operations whose pictures end at their frame: somebody must get the frame of one and nothing more."""
+    whole_refs = {ref for op in program.ops if isinstance(op, OpaqueProgram) for ref in op.reads()}
+    whole_refs |= {*program.memories.values(), *_find_last(program).values()}
+    return {ref.op for ref in whole_refs}
+
+
+def _find_last(program: LoweredProgram) -> dict[str, Ref]:
+    """The outputs of operations of which nobody reads anything."""
+    read = {ref.op for op in program.ops for ref in op.reads()}
+    return {name: ref for name, ref in program.outputs.items() if ref.op not in read}
+
+
+def _crop_outputs(program: LoweredProgram) -> LoweredProgram:
+    """A program whose outputs are not read by others, where they go on beyond their frame."""
+    ops, outputs, last = list(program.ops), dict(program.outputs), _find_last(program)
+    for name, ref in program.outputs.items():
+        if ref in program.data_windows and name not in last:
+            shape = program.shape(ref)
+            glsl = glsl_type(shape.channels)
+            owner = program.ops[ref.op].owner
+            ops.append(Crop((shape,), owner, "primitive/convert", f"as_{glsl}", (Parameter(glsl, ref),)))
+            outputs[name] = Ref(len(ops) - 1)
+    return replace(program, ops=tuple(ops), outputs=MappingProxyType(outputs))
+
+
+@singledispatch
+def _find_window(op: Op, pictures: _Pictures, most: Region) -> Region | None:
+    """The pixels that an operation has, of `most`, or None for pixels everywhere. Its frame is added to them."""
+    return Region.whole(op.size)
+
+
+@_find_window.register
+def _(op: Read, pictures: _Pictures, most: Region) -> Region | None:
+    return op.data_window or Region.whole(op.size)
+
+
+@_find_window.register
+def _(op: Crop, pictures: _Pictures, most: Region) -> Region | None:
+    return Region.whole(op.size)
+
+
+@_find_window.register
+def _(op: Call, pictures: _Pictures, most: Region) -> Region | None:
+    """The pixels of all that it reads, except of what has no end: noise over a picture ends where the picture does."""
+    refs = [ref for ref in op.reads() if pictures.is_bounded(ref)]
+    windows = [pictures.find_window(ref) for ref in refs if pictures.find_size(ref) == op.size]
+    return _unite(windows) if windows else Region.whole(op.size) if refs else None
+
+
+@_find_window.register
+def _(op: Gather, pictures: _Pictures, most: Region) -> Region | None:
+    """Where it reads something else than what the edge mode invents."""
+    refs = {item: item.operand for item in op.accessors if isinstance(item.operand, Ref)}
+    read = {item: ref for item, ref in refs.items() if pictures.is_bounded(ref)}
+    if not read:
+        return None
+    if op.warps:
+        return most
+    windows = [Region.whole(op.size)]
+    for item, ref in read.items():
+        window, size = pictures.find_window(ref), pictures.find_size(ref)
+        if item.around:
+            windows.append(_follow(item.around, window, size, op.size, grows=False))
+        elif size == op.size:
+            windows.append(window)
+    return _unite(windows)
+
+
+@_find_window.register
+def _(op: Placement, pictures: _Pictures, most: Region) -> Region | None:
+    """Where the placed picture lies; with an edge mode that continues it, everywhere."""
+    (item,) = op.accessors
+    if op.edge != "black" or item.around is None or not isinstance(item.operand, Ref):
+        return most
+    window, size = pictures.find_window(item.operand), pictures.find_size(item.operand)
+    return _follow(item.around, window, size, op.size, grows=True)
+
+
+@_find_window.register
+def _(op: Convolve, pictures: _Pictures, most: Region) -> Region | None:
+    """Along its axis the pixels of which a tap, or without black outside the middle one, lies in what it reads."""
+    if op.image.op in pictures.boundless:
+        return None
+    read, taps = pictures.find_window(op.image), len(op.weights)
+    if read == Region.whole(pictures.find_size(op.image)) and op.edge != "black":
+        return Region.whole(op.size)
+    spans = [read.across, read.down]
+    first, end = spans[op.axis]
+    low, high = (op.origin, op.origin + taps - 1) if op.edge == "black" else (op.origin + taps // 2,) * 2
+    spans[op.axis] = (math.ceil((first - high) / op.stride), math.floor((end - 1 - low) / op.stride) + 1)
+    return Region.of(*spans)
+
+
+def _follow(around: Neighborhood, read: Region, size: Size, own: Size, *, grows: bool) -> Region:
+    """The pixels of a picture of the size `own` that are read from within `read`; if it `grows`, also those around."""
+    if not grows and read == Region.whole(size):
+        return Region.whole(own)
+    radius = around.radius if grows else (0.0, 0.0)
+    inverse = _invert(around.matrix)
+    if inverse is None or not all(map(math.isfinite, radius)):
+        return read.union(Region.whole(own))
+    a, b, x, c, d, y = inverse
+    corners = [
+        (a * i + b * j + x, c * i + d * j + y)
+        for i in (read.x - radius[0], read.across[1] + radius[0])
+        for j in (read.y - radius[1], read.down[1] + radius[1])
+    ]
+    across, down = ((min(places), max(places)) for places in zip(*corners, strict=True))
+    if grows:
+        return Region.of(*((math.floor(low), math.ceil(high)) for low, high in (across, down)))
+    return Region.of(*((math.ceil(low - _ROUNDING), math.floor(high + _ROUNDING)) for low, high in (across, down)))
+
+
+def _invert(matrix: Affine) -> Affine | None:
+    """The matrix that leads back; None if there is none."""
+    a, b, x, c, d, y = matrix
+    determinant = a * d - b * c
+    if not (math.isfinite(determinant) and abs(determinant) > 1e-12):
+        return None
+    e, f, g, h = d / determinant, -b / determinant, -c / determinant, a / determinant
+    return (e, f, -(e * x + f * y), g, h, -(g * x + h * y))
+
+
+def _unite(windows: Sequence[Region]) -> Region:
+    return reduce(Region.union, windows)

@@ -1,0 +1,182 @@
+"""Pictures that go on beyond their frame: what leaves it comes back, and costs nothing where nobody reads it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+from exr_files import create_output
+from halation.errors import DeviceError
+from halation.graph import Graph, Input, Output, Port, Settings
+from halation.nodes import Filter, catalogue
+from halation.renderer import Renderer, RenderRequest, open_device
+from halation.resources.sandbox import UNRESTRICTED
+from random_graphs import pictures, random_graph
+from scipy.ndimage import gaussian_filter
+from selection import list_seeds
+
+NODES = catalogue()
+WIDTH, HEIGHT = 64, 48
+MOVED = (12.0, 9.0)
+
+
+def make_picture(seed: int = 1, size: tuple[int, int] = (WIDTH, HEIGHT)) -> np.ndarray:
+    rng = np.random.default_rng(seed)
+    picture = np.ones((size[1], size[0], 4), np.float32)
+    picture[..., :3] = gaussian_filter(rng.random((size[1], size[0], 3)), (2, 2, 0))
+    return picture
+
+
+def chain(*nodes: Filter, overscan: float = 0.5, file: str = "") -> Graph:
+    """Nodes in a row, from the input `picture` to the output `out`."""
+    graph = Graph(settings=Settings(overscan=overscan)).add_input("picture", Input(file=file))
+    last = Port("inputs", "picture")
+    for number, node in enumerate(nodes):
+        graph = graph.add(f"n{number}", node).connect(last, Port(f"n{number}", "image"))
+        last = Port(f"n{number}", "out")
+    return graph.add_output("out", Output()).connect(last, Port("outputs", "out"))
+
+
+def move(x: float, y: float) -> Filter:
+    return NODES["transform"](position=(x, y), kernel="nearest")
+
+
+AWAY, BACK = move(*MOVED), move(-MOVED[0], -MOVED[1])
+
+
+@pytest.mark.parametrize("overscan", [0.25, 0.5, 2.0])
+def test_what_a_move_takes_out_of_the_frame_comes_back(run, overscan: float) -> None:
+    """Through a node in between, which keeps two transforms from being joined to one."""
+    picture = make_picture()
+    graph = chain(AWAY, NODES["exposure"](stops=1.0), BACK, overscan=overscan)
+    np.testing.assert_array_equal(run(graph, {"picture": picture})[..., :3], 2.0 * picture[..., :3])
+
+
+def test_without_overscan_it_is_lost(run) -> None:
+    picture = make_picture()
+    made = run(chain(AWAY, NODES["exposure"](stops=1.0), BACK, overscan=0.0), {"picture": picture})
+    expected = 2.0 * picture
+    expected[HEIGHT - 9 :] = expected[:, WIDTH - 12 :] = 0.0
+    np.testing.assert_array_equal(made[..., :3], expected[..., :3])
+
+
+def test_overscan_ends_where_it_is_set(run) -> None:
+    """An eighth of 48 lines is 6, of the 9 and 12 that the picture is moved."""
+    picture = make_picture()
+    made = run(chain(AWAY, NODES["exposure"](stops=1.0), BACK, overscan=0.125), {"picture": picture})
+    expected = 2.0 * picture
+    expected[HEIGHT - 3 :] = expected[:, WIDTH - 6 :] = 0.0
+    np.testing.assert_array_equal(made[..., :3], expected[..., :3])
+
+
+def test_a_blur_beyond_the_frame_is_scipys(run) -> None:
+    """The picture is blurred before it comes back: where it was outside of the frame as well, and around itself."""
+    picture, sigma = make_picture(), 1.5
+    graph = chain(AWAY, NODES["gaussian_blur"](sigma=sigma, edge="black"), BACK)
+    expected = gaussian_filter(picture.astype(np.float64), (sigma, sigma, 0), mode="constant", truncate=8)
+    np.testing.assert_allclose(run(graph, {"picture": picture}), expected, atol=3e-5)
+
+
+@pytest.mark.parametrize("seed", list_seeds(4, 24))
+def test_random_moves_and_their_inverse(run, seed: int) -> None:
+    rng, picture = np.random.default_rng(seed), make_picture(seed)
+    moves = [(float(x), float(y)) for x, y in rng.integers(-20, 20, (3, 2))]
+    shade = NODES["saturation"](saturation=0.5)
+    nodes = [node for x, y in moves for node in (move(x, y), shade)]
+    nodes += [node for x, y in reversed(moves) for node in (move(-x, -y), shade)]
+    expected = run(chain(*([shade] * 6)), {"picture": picture})
+    np.testing.assert_allclose(run(chain(*nodes, overscan=2.0), {"picture": picture}), expected, atol=1e-6)
+
+
+@pytest.mark.parametrize(("edge", "ring"), [("clamp", 2), ("black", 5)])
+@pytest.mark.parametrize("k1", [0.1, -0.08])
+def test_a_lens_and_back_loses_nothing(run, k1: float, edge: str, ring: int) -> None:
+    """Barrel distortion takes corners in, pincushion distortion out of the frame.
+
+    Where black begins at the frame, two kernels of two pixels, one of them stretched, reach it from a ring of five.
+    """
+    y, x = np.mgrid[0:120, 0:160] / 120
+    picture = np.stack([0.5 + 0.4 * np.sin(3 * x + 2 * y), x, y, np.ones_like(x)], axis=2).astype(np.float32)
+    lens = {"k1": k1, "kernel": "catmull-rom", "edge": edge}
+    out, back = NODES["lens_distortion"](**lens), NODES["lens_distortion"](**lens, direction="undistort")
+    made = run(chain(out, NODES["exposure"](stops=1.0), back, overscan=1.0), {"picture": picture})
+    inner = (slice(ring, -ring), slice(ring, -ring), slice(3))
+    assert np.abs(made / 2.0 - picture)[inner].max() < 1e-3
+    lost = run(chain(out, NODES["exposure"](stops=1.0), back, overscan=0.0), {"picture": picture})
+    assert k1 < 0 or np.abs(lost / 2.0 - picture)[inner].max() > 0.02
+
+
+def write_overscan(path: Path, margin: tuple[int, int], pixels: np.ndarray) -> str:
+    spec = oiio.ImageSpec(pixels.shape[1], pixels.shape[0], 4, "float")
+    spec.full_x, spec.full_y, spec.full_width, spec.full_height = 100, 50, WIDTH, HEIGHT
+    spec.x, spec.y = 100 - margin[0], 50 - margin[1]
+    file = create_output(path)
+    assert file.open(str(path), spec) and file.write_image(pixels) and file.close()
+    return str(path)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_render_with_overscan_arrives_whole(renderer, tmp_path: Path, seed: int) -> None:
+    across, down = (int(side) for side in np.random.default_rng(seed).integers(4, 12, 2))
+    pixels = make_picture(seed, (WIDTH + 2 * across, HEIGHT + 2 * down))
+    file = write_overscan(tmp_path / "plate.exr", (across, down), pixels)
+    made = renderer.render(chain(move(-float(across), 3.0), overscan=0.5, file=file))["out"]
+    np.testing.assert_array_equal(made, pixels[down - 3 :][:HEIGHT, 2 * across :][:, :WIDTH])
+    frame = renderer.render(chain(move(0.0, 0.0), overscan=0.5, file=file))["out"]
+    np.testing.assert_array_equal(frame, pixels[down:-down, across:-across])
+
+
+def test_a_data_window_inside_the_frame_stays_there(renderer, tmp_path: Path) -> None:
+    pixels = make_picture(3, (20, 10))
+    file = write_overscan(tmp_path / "small.exr", (-30, -20), pixels)
+    made = renderer.render(chain(move(5.0, 0.0), file=file))["out"]
+    assert not made[:20].any()
+    np.testing.assert_array_equal(made[20:30, 35:55], pixels)
+
+
+def test_nobody_pays_for_what_nobody_reads(renderer) -> None:
+    request = RenderRequest({"picture": make_picture()})
+    nodes = (NODES["gaussian_blur"](sigma=3.0), AWAY, NODES["exposure"](stops=1.0))
+    plain, wide = (renderer.compile(chain(*nodes, overscan=overscan), request) for overscan in (0.0, 1.0))
+    assert [surface.size for surface in wide.surfaces] == [surface.size for surface in plain.surfaces]
+    back = renderer.compile(chain(*nodes, BACK, overscan=1.0), request)
+    largest = max(surface.size for surface in back.surfaces)
+    assert WIDTH < largest[0] <= WIDTH + 12 + 2 and largest[1] <= HEIGHT + 9 + 2
+
+
+@pytest.fixture(scope="module")
+def unfused():
+    engine = Renderer(open_device(sandbox=UNRESTRICTED), budget=0, fusion=False, sandbox=UNRESTRICTED)
+    yield engine
+    engine.close()
+
+
+@pytest.mark.parametrize("seed", list_seeds(6, 60))
+def test_fused_equals_unfused_to_the_bit(renderer, unfused, seed: int) -> None:
+    graph = random_graph(seed)
+    graph = replace(graph, settings=replace(graph.settings, overscan=0.4))
+    request = RenderRequest(pictures(seed), precision="float")
+    made, expected = renderer.render(graph, request), unfused.render(graph, request)
+    for name in expected:
+        np.testing.assert_array_equal(made[name].view(np.uint8), expected[name].view(np.uint8), name)
+
+
+def test_an_edited_graph_is_planned_as_a_new_one(renderer) -> None:
+    """How far a picture is made beyond its frame follows the numbers that are dragged."""
+    picture = make_picture()
+    for x in (12.0, 3.0, 20.0, 12.0):
+        graph = chain(move(x, 0.0), NODES["exposure"](stops=1.0), move(-x, 0.0))
+        made = renderer.render(graph, RenderRequest({"picture": picture}))["out"]
+        np.testing.assert_array_equal(made[..., :3], 2.0 * picture[..., :3])
+
+
+def test_what_does_not_fit_is_refused_with_a_sentence(renderer) -> None:
+    graph = chain(AWAY, NODES["exposure"](stops=1.0), BACK)
+    device = open_device(sandbox=UNRESTRICTED, memory=60_000)
+    small = Renderer(device, sandbox=UNRESTRICTED)
+    with pytest.raises(DeviceError, match="with overscan they cannot be made in parts: .* smaller overscan"):
+        small.render(graph, RenderRequest({"picture": make_picture()}))
+    small.close()
