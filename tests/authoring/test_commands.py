@@ -71,6 +71,7 @@ EXAMPLES: dict[type[EditCommand], Callable[[Session, Path], EditCommand]] = {
     c.SetFrameRate: lambda s, p: c.SetFrameRate(30.0),
     c.SetPreroll: lambda s, p: c.SetPreroll(4),
     c.SetColorSettings: lambda s, p: c.SetColorSettings(working="ACEScg"),
+    c.SetOverscan: lambda s, p: c.SetOverscan(0.1),
     c.SetReferenceHeight: lambda s, p: c.SetReferenceHeight(1080),
     c.SetCanvasSize: lambda s, p: c.SetCanvasSize((64, 48)),
     c.AddFrame: lambda s, p: c.AddFrame("Look"),

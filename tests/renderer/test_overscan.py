@@ -177,6 +177,6 @@ def test_what_does_not_fit_is_refused_with_a_sentence(renderer) -> None:
     graph = chain(AWAY, NODES["exposure"](stops=1.0), BACK)
     device = open_device(sandbox=UNRESTRICTED, memory=60_000)
     small = Renderer(device, sandbox=UNRESTRICTED)
-    with pytest.raises(DeviceError, match="with overscan they cannot be made in parts: .* smaller overscan"):
+    with pytest.raises(DeviceError, match="with overscan they cannot be made in parts"):
         small.render(graph, RenderRequest({"picture": make_picture()}))
     small.close()

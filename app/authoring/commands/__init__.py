@@ -27,7 +27,15 @@ from .linking import (
     ToggleMute,
 )
 from .named_items import AddItem, DuplicateItem, RemoveItem, RenameItem
-from .settings import SetCanvasSize, SetColorSettings, SetFrameRange, SetFrameRate, SetPreroll, SetReferenceHeight
+from .settings import (
+    SetCanvasSize,
+    SetColorSettings,
+    SetFrameRange,
+    SetFrameRate,
+    SetOverscan,
+    SetPreroll,
+    SetReferenceHeight,
+)
 from .values import (
     ConvertLength,
     DescribeControl,
@@ -115,6 +123,7 @@ __all__ = [
     "SetInput",
     "SetKey",
     "SetOutput",
+    "SetOverscan",
     "SetPreroll",
     "SetReferenceHeight",
     "SetValue",

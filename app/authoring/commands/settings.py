@@ -8,6 +8,7 @@ from halation.nodes import MAX_REFERENCE_HEIGHT, ColorSettings, Size
 
 from ...errors import GraphError
 from ...graph import Settings
+from ...resources.picture import MAX_OVERSCAN
 from ..state.document_time import MAX_FRAME
 from ..state.open_document import OpenDocument
 from .command import EditCommand, Edited
@@ -86,6 +87,19 @@ class SetReferenceHeight(EditCommand[None]):
             raise GraphError(f"a reference height of {self.height}: give 1 to {MAX_REFERENCE_HEIGHT}")
         settings = replace(document.graph.settings, reference_height=self.height)
         return Edited("Set reference height", None, replace(document.graph, settings=settings), merge=self.merge)
+
+
+@dataclass(frozen=True)
+class SetOverscan(EditCommand[None]):
+    """Set how far beyond their frame pictures are kept, in heights of the frame; 0 for not at all."""
+
+    overscan: float
+    merge: str = ""
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        if not 0.0 <= self.overscan <= MAX_OVERSCAN:
+            raise GraphError(f"an overscan of {self.overscan:g}: give 0 to {MAX_OVERSCAN:g} heights of the frame")
+        return _set(document, "Set overscan", replace(document.root.settings, overscan=self.overscan), self.merge)
 
 
 @dataclass(frozen=True)

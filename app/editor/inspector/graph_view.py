@@ -20,11 +20,6 @@ from ...authoring.commands import (
     RemoveEnd,
     RenameControl,
     RenameEnd,
-    SetCanvasSize,
-    SetFrameRange,
-    SetFrameRate,
-    SetPreroll,
-    SetReferenceHeight,
 )
 from ...authoring.edits.element_id import NO_ELEMENT, ElementId
 from ...authoring.edits.elements import entry
@@ -35,22 +30,16 @@ from ...graph.names import fresh_name
 from ..fields.color_field import color_field
 from ..fields.colors import decode, encode
 from ..fields.fields import Fields
-from ..fields.number_field import number_field, row_of_numbers
-from ..fields.numbers import RATE, near
 from ..fields.text_field import text_field
 from ..theme.palette import RGB
-from ..theme.style import ui_scale
 from ..toolkit.places import item_rect
 from ..toolkit.words import tip
-from .applying import find_height
-from .color_rows import color_rows
 from .end_view import describe_binding, draw_text
 from .heading import draw_faults, draw_heading
+from .project_rows import ProjectRows
 from .rows import Rows
 from .value_rows import ValueRows, go_to
 
-_SIDE = Value("size", "int", 1920, low=1.0, high=4096.0, minimum=1.0, maximum=16384.0, unit="px")
-_PREROLL = Value("preroll", "int", 12, low=0.0, high=100.0, minimum=0.0)
 _TEXT = Value("name", "text", "")
 _COLOR = Value("color", "color", (0.0,) * 4, 4, low=0.0, high=1.0)
 _KINDS = tuple(
@@ -58,14 +47,13 @@ _KINDS = tuple(
     for kind in Kind
     for width in ((2, 3, 4) if kind is Kind.VECTOR else (kind.facts.channels,))
 )
-FULL_HD = (1920, 1080)
 
 
 class GraphView:
     """Shows and edits the graph while nothing is selected, and frames and comments."""
 
     def __init__(self, fields: Fields, values: ValueRows) -> None:
-        self._fields, self._values = fields, values
+        self._fields, self._values, self._project = fields, values, ProjectRows(fields)
 
     def draw(self, rows: Rows) -> None:
         """Draw the graph that the canvas shows."""
@@ -82,10 +70,7 @@ class GraphView:
             self._controls(rows)
         # What the graph offers comes first. So the settings of the project, which are set once, are folded then.
         if not inside and rows.fold("Project", "project", is_open=not has_controls):
-            self._size(rows)
-            self._reference_height(rows)
-            self._time(rows)
-            color_rows(rows, self._fields)
+            self._project.draw(rows)
         self._ends(rows, "inputs")
         self._ends(rows, "outputs")
         if not has_controls:
@@ -132,123 +117,6 @@ class GraphView:
         rows.note("Ctrl+Enter starts a new line.")
 
     # --- parts -------------------------------------------------------------------------------------------------------
-
-    def _size(self, rows: Rows) -> None:
-        session = rows.context.session
-        size = session.graph.settings.size
-        rows.name(
-            "size",
-            "canvas",
-            doc="The size of generated pictures. Automatic: that of the first picture",
-        )
-        width, side = rows.field(), imgui.get_frame_height()
-        if size is None:
-            if imgui.button("Automatic##size", (width, 0.0)):
-                rows.act(lambda: session.apply(SetCanvasSize(FULL_HD)))
-            rows.record("size")
-            tip("The size of the first picture that is read; click to set one")
-            return
-        imgui.begin_group()
-        edit = row_of_numbers(
-            self._fields,
-            "size",
-            size,
-            _SIDE,
-            width - side,
-            ("w", "h") if width > 170 * ui_scale() else ("", ""),
-            keep_type=True,
-        )
-        imgui.end_group()
-        rows.record("size")
-        imgui.same_line(0.0, 0.0)
-        if rows.icon(icons.ICON_FA_XMARK, "automatic size", "Automatic: the size of the first picture"):
-            rows.act(lambda: session.apply(SetCanvasSize(None)))
-        if edit and isinstance(edit.value, tuple):
-            wide, high = edit.value
-            rows.act(lambda: session.apply(SetCanvasSize((int(wide), int(high)), merge=edit.merge)))
-
-    def _reference_height(self, rows: Rows) -> None:
-        """Draw the height at which numbers of lengths are pixels. Switching it on keeps the picture as it is."""
-        session = rows.context.session
-        reference = session.graph.settings.reference_height
-        doc = "Lengths are pixels of a picture of this height, so that the look is the same at every size."
-        rows.name("reference height", "lengths at", doc=doc, changed=reference is not None)
-        width = rows.field()
-        if reference is None:
-            if imgui.button("Pixels of the picture##reference height", (width, 0.0)):
-                height = find_height(session.graph, rows.context.viewer.picture[1])
-                rows.act(lambda: session.apply(SetReferenceHeight(height)))
-            rows.record("reference height")
-            tip("A larger picture has finer grain and thinner lines; click to make the look the same at every size")
-            return
-        width -= imgui.get_frame_height()
-        edit = number_field(self._fields, "reference height", reference, _SIDE, width, suffix="px high", plain=True)
-        rows.record("reference height")
-        imgui.same_line(0.0, 0.0)
-        if rows.icon(icons.ICON_FA_XMARK, "no reference height", "Pixels of the picture"):
-            rows.act(lambda: session.apply(SetReferenceHeight(None)))
-        if edit and isinstance(edit.value, int | float):
-            height, token = int(edit.value), edit.merge
-            rows.act(lambda: session.apply(SetReferenceHeight(height, merge=token)))
-
-    def _time(self, rows: Rows) -> None:
-        """Draw the frame range, the frame rate and the pre-roll."""
-        session = rows.context.session
-        settings, (first, last) = session.root.settings, session.time.frames
-        rows.name("frames", "frames", doc="The first and the last frame", changed=settings.frames is not None)
-        stated = settings.frames is not None
-        width = rows.field() - (imgui.get_frame_height() if stated else 0.0)
-        imgui.begin_group()
-        edit = row_of_numbers(
-            self._fields, "frames", (first, last), near(first), width, ("", ""), keep_type=True, plain=True
-        )
-        imgui.end_group()
-        rows.record("frames")
-        if not stated:
-            tip("Automatic: from the sequences that the graph reads, or from its keys. Type a number to set it")
-        else:
-            imgui.same_line(0.0, 0.0)
-            if rows.icon(
-                icons.ICON_FA_XMARK,
-                "automatic frames",
-                "Automatic: from sequences or keys",
-            ):
-                rows.act(lambda: session.apply(SetFrameRange(None)))
-        if edit and isinstance(edit.value, tuple):
-            low, high = (int(part) for part in edit.value)
-            # The end that moves pushes the other one, so that the range never runs backwards.
-            low, high = (low, max(low, high)) if low != first else (min(low, high), high)
-            rows.act(lambda: session.apply(SetFrameRange(low, high, merge=edit.merge)))
-        rows.name("rate", "rate", doc="Frames per second", changed=settings.rate != 24.0)
-        rate = number_field(self._fields, "rate", settings.rate, RATE, rows.field(), suffix="fps", plain=True)
-        rows.record("rate")
-        if rate and isinstance(rate.value, int | float):
-            fps, token = float(rate.value), rate.merge
-            rows.act(lambda: session.apply(SetFrameRate(fps, merge=token)))
-        self._preroll(rows)
-
-    def _preroll(self, rows: Rows) -> None:
-        session = rows.context.session
-        preroll = session.root.settings.preroll
-        doc = "How many frames before the requested one nodes with a memory start. Without a number they start "
-        doc += "at the first frame, so that a frame is the same wherever a render begins."
-        rows.name("preroll", "pre-roll", doc=doc, changed=preroll is not None)
-        width = rows.field()
-        if preroll is None:
-            if imgui.button("First frame##preroll", (width, 0.0)):
-                rows.act(lambda: session.apply(SetPreroll(12)))
-            rows.record("preroll")
-            tip(doc)
-            return
-        width -= imgui.get_frame_height()
-        edit = number_field(self._fields, "preroll", preroll, _PREROLL, width, suffix="frames", plain=True)
-        rows.record("preroll")
-        imgui.same_line(0.0, 0.0)
-        if rows.icon(icons.ICON_FA_XMARK, "automatic preroll", "From the first frame"):
-            rows.act(lambda: session.apply(SetPreroll(None)))
-        if edit and isinstance(edit.value, int | float):
-            count, token = int(edit.value), edit.merge
-            rows.act(lambda: session.apply(SetPreroll(count, merge=token)))
 
     def _ends(self, rows: Rows, side: str) -> None:
         session = rows.context.session
