@@ -42,20 +42,21 @@ _ROUNDING = 1e-6
 """Pixels by which the edge of a data window may be off after a matrix in doubles, and still lie on a pixel's edge."""
 
 
-def add_data_windows(program: LoweredProgram, overscan: float) -> LoweredProgram:
+def add_data_windows(program: LoweredProgram, overscan: float, whole: Set[str] = frozenset()) -> LoweredProgram:
     """The program with the data windows of its pictures, which go `overscan` heights beyond the frame at most.
 
-    An output that others read beyond its frame gets a copy that ends there.
+    Outputs end at their frame, except those in `whole`. One that others read beyond it gets a copy that ends there.
     """
-    program = _crop_outputs(replace(program, data_windows=_find_data_windows(program, overscan)))
-    return replace(program, data_windows=_find_data_windows(program, overscan))
+    program = _crop_outputs(replace(program, data_windows=_find_data_windows(program, overscan, whole)), whole)
+    return replace(program, data_windows=_find_data_windows(program, overscan, whole))
 
 
-def add_extents(program: LoweredProgram, passes: Sequence[PassGroup]) -> LoweredProgram:
-    """The program with the pixels that these passes make of each picture."""
+def add_extents(program: LoweredProgram, passes: Sequence[PassGroup], whole: Set[str] = frozenset()) -> LoweredProgram:
+    """The program with the pixels that these passes make of each picture: of outputs the frame, of `whole` ones all."""
     if not program.data_windows:
         return program
     requested = {ref: Region.whole(program.shape(ref).size) for ref in program.kept_refs}
+    requested |= {ref: program.data_window(ref) for name, ref in program.outputs.items() if name in whole}
     extents: dict[Ref, Region] = {}
     for ref, region in find_regions(program, passes, requested).items():
         frame = Region.whole(program.shape(ref).size)
@@ -64,9 +65,9 @@ def add_extents(program: LoweredProgram, passes: Sequence[PassGroup]) -> Lowered
     return replace(program, extents=MappingProxyType(extents))
 
 
-def _find_data_windows(program: LoweredProgram, overscan: float) -> MappingProxyType[Ref, Region]:
+def _find_data_windows(program: LoweredProgram, overscan: float, whole: Set[str]) -> MappingProxyType[Ref, Region]:
     """The data windows that are not the frame. All pictures of an operation have the same."""
-    ending = _find_ending(program)
+    ending = _find_ending(program, whole)
     known = _Pictures(program, windows := dict[Ref, Region](), boundless := set[int]())
     for index, op in enumerate(program.ops):
         if op.is_indivisible or index in ending or op.size == (1, 1):
@@ -100,22 +101,24 @@ class _Pictures(Struct, frozen=True):
         return self.find_size(ref) != (1, 1) and ref.op not in self.boundless
 
 
-def _find_ending(program: LoweredProgram) -> set[int]:
+def _find_ending(program: LoweredProgram, whole: Set[str]) -> set[int]:
     """The operations whose pictures end at their frame: somebody must get the frame of one and nothing more."""
     whole_refs = {ref for op in program.ops if isinstance(op, OpaqueProgram) for ref in op.reads()}
-    whole_refs |= {*program.memories.values(), *_find_last(program).values()}
+    whole_refs |= {*program.memories.values(), *_find_last(program, whole).values()}
     return {ref.op for ref in whole_refs}
 
 
-def _find_last(program: LoweredProgram) -> dict[str, Ref]:
-    """The outputs of operations of which nobody reads anything."""
+def _find_last(program: LoweredProgram, whole: Set[str]) -> dict[str, Ref]:
+    """The outputs of operations of which nobody needs anything beyond the frame."""
     read = {ref.op for op in program.ops for ref in op.reads()}
+    read |= {ref.op for name, ref in program.outputs.items() if name in whole}
     return {name: ref for name, ref in program.outputs.items() if ref.op not in read}
 
 
-def _crop_outputs(program: LoweredProgram) -> LoweredProgram:
-    """A program whose outputs are not read by others, where they go on beyond their frame."""
-    ops, outputs, last = list(program.ops), dict(program.outputs), _find_last(program)
+def _crop_outputs(program: LoweredProgram, whole: Set[str]) -> LoweredProgram:
+    """A program with copies of those outputs that go on beyond their frame and are not to."""
+    ops, outputs = list(program.ops), dict(program.outputs)
+    last = {*_find_last(program, whole), *whole}
     for name, ref in program.outputs.items():
         if ref in program.data_windows and name not in last:
             shape = program.shape(ref)

@@ -57,6 +57,8 @@ class Surface(Struct, frozen=True):
     """The part of its picture that it holds; None for all of it."""
     is_data: bool = False
     """True for numbers that are no light: depth, ids, measurements."""
+    frame: Size | None = None
+    """The size of its picture's frame; None if it holds just that."""
 
     @property
     def components(self) -> int:

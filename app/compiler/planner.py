@@ -52,6 +52,7 @@ class PlanOptions(Struct, frozen=True):
     scale: float
     halves: frozenset[str]
     by_rows: frozenset[str]
+    whole: frozenset[str]
     target: Target
     precision: Precision
     fusion: bool
@@ -104,6 +105,7 @@ class Planner:
             request.scale,
             request.halves,
             request.by_rows,
+            request.whole,
             target,
             precision,
             fusion,
@@ -111,8 +113,8 @@ class Planner:
         before, lowered = self._lower(options, graph, request, provider, library)
         program = lowered.program
         if graph.settings.overscan:
-            program = add_data_windows(program, graph.settings.overscan)
-        scheduled = _schedule_again(before.scheduled, program, library) if before else None
+            program = add_data_windows(program, graph.settings.overscan, request.whole)
+        scheduled = _schedule_again(options, before.scheduled, program, library) if before else None
         may_need_tiles = before.may_need_tiles if before and scheduled else True
         scheduled = scheduled or _schedule(options, program, library)
         region = before.region if before else None
@@ -145,10 +147,13 @@ def _schedule(options: PlanOptions, program: LoweredProgram, library: Library) -
     target = options.target
     passes = fuse(program, target, enabled=options.fusion)
     passes = rewrite_passes(program, passes, target, library) if options.fusion else passes
-    return schedule(add_extents(program, passes), passes, library, target, options.precision, options.halves)
+    program = add_extents(program, passes, options.whole)
+    return schedule(program, passes, library, target, options.precision, options.halves)
 
 
-def _schedule_again(before: ScheduleRecord, program: LoweredProgram, library: Library) -> ScheduleRecord | None:
+def _schedule_again(
+    options: PlanOptions, before: ScheduleRecord, program: LoweredProgram, library: Library
+) -> ScheduleRecord | None:
     """The plan of a program that differs from that of `before` only in numbers; None if it differs in more.
 
     Which pixels are made beyond the frame may depend on numbers, so it is found each time.
@@ -158,7 +163,7 @@ def _schedule_again(before: ScheduleRecord, program: LoweredProgram, library: Li
     if program.data_windows:
         if find_changed_numbers(before.program, program) is None:
             return None
-        program = add_extents(program, before.passes)
+        program = add_extents(program, before.passes, options.whole)
         if program.extents != before.program.extents:
             return None
     return reschedule(before, program, library)

@@ -38,6 +38,8 @@ class Request(Struct, frozen=True):
     """The part of every output to make, in pixels as they are rendered; None for all: see `focus_program`."""
     by_rows: frozenset[str] = frozenset()
     """Targets, or outputs, that are handed over by rows, from the top down, if they are rendered in tiles."""
+    whole: frozenset[str] = frozenset()
+    """Targets, or outputs, of which all pixels are made, also those beyond the frame."""
 
     def __post_init__(self) -> None:
         if not 0.0 < self.scale < math.inf:

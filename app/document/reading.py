@@ -215,7 +215,7 @@ class _BodyReader(Struct):
         where = self.entry_path(member(at, "outputs"), name, "output")
         record = convert(raw, records.OutputRecord, self.file, where)
         self.keep_unknown(f"outputs.{name}", raw, records.OutputRecord)
-        return Output(*read_type(record.type, self.file, where), record.layer, record.view)
+        return Output(*read_type(record.type, self.file, where), record.layer, record.view, record.overscan)
 
     def read_control(self, name: str, raw: Any, at: str) -> Control:
         """An entry of `controls`."""

@@ -87,6 +87,7 @@ class OutputRecord(msgspec.Struct):
     type: str = "Image"
     layer: str = ""
     view: str = ""
+    overscan: bool = False
 
 
 class ControlRecord(msgspec.Struct):

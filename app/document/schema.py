@@ -58,6 +58,7 @@ _DOCS = {
     "InputRecord.default": "One number, or one for each channel, where there is no picture.",
     "OutputRecord.layer": "The name of the layer in a file of several; by default that of the output.",
     "OutputRecord.view": "The view that shows it; none for what a tone map made ready for the display.",
+    "OutputRecord.overscan": "Whether an EXR file gets the pixels beyond the frame as well.",
     "ControlRecord.target": "The value that it sets, as node.value.",
     "AnimationRecord.keys": "Keys in the order of their frames.",
     "AnimationRecord.outside": "What comes before the first key and after the last.",

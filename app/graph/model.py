@@ -78,13 +78,15 @@ class Input:
 class Output:
     """An output of the graph. `layer` is its name in a file of several layers; by default the name of the output.
 
-    `view` is the default OpenColorIO view: `none` for display colors, as after a tone map.
+    `view` is the default OpenColorIO view: `none` for display colors, as after a tone map. With `overscan` an EXR file
+    gets the pixels that the picture has beyond its frame as well, as far as the overscan of the graph goes.
     """
 
     kind: Kind = Kind.IMAGE
     width: int = 3
     layer: str = ""
     view: str = ""
+    overscan: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "width", _width(self.kind, self.width))

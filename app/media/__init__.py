@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from .pictures.writer import (
         PICTURE_ENDINGS,
         check_destination,
+        cut_to_frame,
         holds_light,
         stores_halves,
         write_picture,
@@ -46,6 +47,7 @@ __all__ = [
     "VideoWriter",
     "check_destination",
     "check_video",
+    "cut_to_frame",
     "find_frame_file",
     "find_layer",
     "find_sequence",
@@ -81,6 +83,7 @@ _HOMES = MappingProxyType(
         "read_metadata": "metadata",
         "stores_halves": "pictures.writer",
         "suggest_pattern": "sequences",
+        "cut_to_frame": "pictures.writer",
         "write_picture": "pictures.writer",
     }
 )

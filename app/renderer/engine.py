@@ -52,6 +52,8 @@ class RenderRequest(Struct, frozen=True):
     """The part of every output to compute, in its pixels. The `window` of a surface says which part was computed."""
     by_rows: frozenset[str] = frozenset()
     """Outputs that are handed over by rows, from the top down, if they are made in tiles: see `Run.receive_rows`."""
+    whole: frozenset[str] = frozenset()
+    """Outputs of which pixels beyond the frame are made as well. The `window` of a surface says which there are."""
 
     @property
     def bound_inputs(self) -> dict[str, Binding]:
@@ -106,6 +108,7 @@ class Renderer:
             request.halves,
             request.region,
             request.by_rows,
+            request.whole,
         )
         return self._planner.plan(
             graph,

@@ -13,6 +13,7 @@ from halation.errors import DeviceError
 from halation.graph import Graph, Input, Output, Port, Settings
 from halation.nodes import Filter, catalogue
 from halation.renderer import Renderer, RenderRequest, open_device
+from halation.renderer.jobs.job import OutputSettings, run_job
 from halation.resources.sandbox import UNRESTRICTED
 from random_graphs import pictures, random_graph
 from scipy.ndimage import gaussian_filter
@@ -180,3 +181,46 @@ def test_what_does_not_fit_is_refused_with_a_sentence(renderer) -> None:
     with pytest.raises(DeviceError, match="with overscan they cannot be made in parts"):
         small.render(graph, RenderRequest({"picture": make_picture()}))
     small.close()
+
+
+def render_files(renderer: Renderer, graph: Graph, *paths: Path) -> None:
+    settings = OutputSettings([("out", path) for path in paths], precision="float")
+    run_job(renderer, graph, RenderRequest(), settings, (1,))
+
+
+@pytest.mark.parametrize("overscan", [0.0, 0.125, 1.0])
+def test_an_output_with_overscan_is_written_whole(renderer, tmp_path: Path, overscan: float) -> None:
+    """By OpenImageIO's account: the display window is the frame, the data window what there is of it and around."""
+    pixels = make_picture(4, (WIDTH + 20, HEIGHT + 16))
+    graph = chain(NODES["exposure"](stops=1.0), file=write_overscan(tmp_path / "plate.exr", (10, 8), pixels))
+    graph = replace(
+        graph,
+        settings=Settings(overscan=overscan),
+        outputs={"out": replace(graph.outputs["out"], overscan=True)},
+    )
+    render_files(renderer, graph, tmp_path / "whole.exr", tmp_path / "frame.png")
+    margin = min(10, int(overscan * HEIGHT)), min(8, int(overscan * HEIGHT))
+    buffer = oiio.ImageBuf(str(tmp_path / "whole.exr"))
+    spec = buffer.spec()
+    assert (spec.x, spec.y, spec.width, spec.height) == (
+        -margin[0], -margin[1], WIDTH + 2 * margin[0], HEIGHT + 2 * margin[1],
+    )  # fmt: skip
+    assert (spec.full_x, spec.full_y, spec.full_width, spec.full_height) == (0, 0, WIDTH, HEIGHT)
+    expected = pixels[8 - margin[1] : 8 + HEIGHT + margin[1], 10 - margin[0] : 10 + WIDTH + margin[0]]
+    np.testing.assert_array_equal(buffer.get_pixels(oiio.FLOAT)[..., :3], 2.0 * expected[..., :3])
+    shown = oiio.ImageBuf(str(tmp_path / "frame.png")).spec()
+    assert (shown.width, shown.height) == (WIDTH, HEIGHT)
+    again = chain(NODES["exposure"](stops=-1.0), move(3.0, 0.0), file=str(tmp_path / "whole.exr"))
+    made = renderer.render(again)["out"]
+    np.testing.assert_array_equal(made[:, 3:, :3], pixels[8:-8, 10:-13, :3])
+    np.testing.assert_array_equal(made[:, : 3 - min(margin[0], 3)], 0.0)
+
+
+def test_an_output_that_others_read_is_the_frame(renderer) -> None:
+    graph = chain(AWAY, NODES["exposure"](stops=1.0), BACK)
+    graph = graph.add_output("moved", Output()).connect(Port("n1", "out"), Port("outputs", "moved"))
+    picture = make_picture()
+    made = renderer.render(graph, RenderRequest({"picture": picture}))
+    assert made["moved"].shape == picture.shape
+    np.testing.assert_array_equal(made["moved"][9:, 12:, :3], 2.0 * picture[:-9, :-12, :3])
+    np.testing.assert_array_equal(made["out"][..., :3], 2.0 * picture[..., :3])

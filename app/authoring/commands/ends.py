@@ -116,13 +116,16 @@ class SetOutput(EditCommand[None]):
     name: str
     layer: str | None = None
     view: str | None = None
+    overscan: bool | None = None
     merge: str = ""
 
     def apply(self, document: OpenDocument) -> Edited[None]:
         graph = document.graph
         if self.name not in graph.outputs:
             raise GraphError(f"the graph has no output '{self.name}'")
-        changed = replace(graph.outputs[self.name], **_clean_set_texts(layer=self.layer, view=self.view))
+        end = graph.outputs[self.name]
+        overscan = end.overscan if self.overscan is None else self.overscan
+        changed = replace(end, overscan=overscan, **_clean_set_texts(layer=self.layer, view=self.view))
         graph = replace(graph, outputs={**graph.outputs, self.name: changed})
         return Edited(f"Set outputs.{self.name}", None, graph, merge=self.merge)
 

@@ -67,6 +67,7 @@ def schedule(
             last[ref],
             program.window(ref),
             program.shape(ref).data,
+            program.shape(ref).size,
         )
         for ref in needed
     )

@@ -181,6 +181,13 @@ class EndView:
             rows.record(f"{key} view")
             if index is not None:
                 rows.act(lambda: session.apply(SetOutput(name, view=views[index])))
+        doc = "EXR files get the pixels beyond the frame as well, as far as the overscan of the project goes."
+        rows.name(f"{key} overscan", "overscan", doc=doc, changed=end.overscan)
+        rows.field()
+        is_changed, overscan = imgui.checkbox(f"##{key} overscan", end.overscan)
+        rows.record(f"{key} overscan")
+        if is_changed:
+            rows.act(lambda: session.apply(SetOutput(name, overscan=overscan)))
 
     def _text(self, rows: Rows, key: str, label: str, text: str, then: Then, doc: str, hint: str = "") -> None:
         draw_text(rows, self._fields, key, label, text, then, doc, hint)

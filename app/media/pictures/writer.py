@@ -17,6 +17,7 @@ from ...color.transforms import Array
 from ...errors import OutputError, UsageError
 from ...resources.atomic_write import check_writable, write_atomically
 from ...resources.machine import has_memory_limit
+from ...resources.picture import PixelRectangle
 from ...resources.render_choices import Precision
 from ...resources.sandbox import Sandbox
 from ..channels import is_depth
@@ -65,6 +66,7 @@ def write_picture(
     metadata: Mapping[str, Any] | None = None,
     encoding: Encoding | None = None,
     frame: int = 1,
+    frames: Mapping[str, PixelRectangle] | None = None,
     sandbox: Sandbox,
 ) -> None:
     """Write [h, w, c] or [h, w] arrays; the ending of the name decides the format.
@@ -77,27 +79,51 @@ def write_picture(
     Without an Image, the first Field as gray: its number times the largest integer. An `encoding` says more than a
     view: see there.
     Where the encoding dithers, `frame` chooses the pattern.
+    `frames` says where the frame (the display window) lies in arrays that have more pixels than it: EXR keeps them all,
+    other formats hold the frame.
     `metadata` is kept as far as the format can: all of it in EXR, text in PNG.
 
     Raises:
         UsageError: unknown ending, compression, view or color space, or layers that such a file cannot hold.
         OutputError: the file could not be written; an older one is still there.
     """
-    layers = {name: array if array.ndim == 3 else array[..., None] for name, array in layers.items()}
-    sizes = {name: (array.shape[1], array.shape[0]) for name, array in layers.items()}
+    layers, frames = (
+        {name: array if array.ndim == 3 else array[..., None] for name, array in layers.items()},
+        frames or {},
+    )
+    sizes = {name: frames[name][2:] if name in frames else array.shape[1::-1] for name, array in layers.items()}
     encoding = encoding or Encoding(view)
     format = _check_layers(path, {name: kinds[name] for name in layers}, sizes, compression, encoding)
     metadata = metadata or {}
     if format == "openexr":
         parts = encode_exr_parts(layers, kinds, precision, compression, encoding)
+        for part, name in zip(parts, layers, strict=True):
+            if name in frames:
+                _set_windows(part.spec, frames[name])
     else:
         layer_name = choose_shown_layer(path, {name: kinds[name] for name in layers})
-        is_data = not kinds[layer_name].is_color
-        parts = [_encode_picture(layers[layer_name], is_data, frame, format, precision, compression, encoding)]
+        is_data, array = not kinds[layer_name].is_color, layers[layer_name]
+        array = cut_to_frame(array, frames.get(layer_name))
+        parts = [_encode_picture(array, is_data, frame, format, precision, compression, encoding)]
     for part in parts:
         add_metadata(part.spec, metadata if part is parts[0] else {}, format)
     room = sum(part.array.nbytes for part in parts) + sum(len(str(value)) for value in metadata.values())
     write_atomically(path, _make_encoder(path, format, parts), room, sandbox=sandbox)
+
+
+def cut_to_frame(array: Array, frame: PixelRectangle | None) -> Array:
+    """The frame of a picture of which more pixels are given; None for all of them."""
+    if frame is None:
+        return array
+    x, y, width, height = frame
+    return array[y : y + height, x : x + width]
+
+
+def _set_windows(spec: oiio.ImageSpec, frame: PixelRectangle) -> None:
+    """Make the frame the display window, which begins at 0, and all pixels the data window."""
+    x, y, width, height = frame
+    spec.x, spec.y = -x, -y
+    spec.full_x, spec.full_y, spec.full_width, spec.full_height = 0, 0, width, height
 
 
 def holds_light(path: str | Path) -> bool:

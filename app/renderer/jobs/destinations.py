@@ -18,7 +18,7 @@ from ...errors import OutputError, UsageError
 from ...graph import OUTPUTS, Graph, Port, color_settings, did_you_mean
 from ...graph.frames import Pattern, check_numbered, is_video
 from ...inputs.default_view import PictureEncodings, choose_default_view
-from ...resources.picture import Picture
+from ...resources.picture import Picture, PixelRectangle
 from ...resources.render_choices import Dither
 from ...resources.sandbox import Sandbox
 from ..engine import RenderRequest
@@ -157,7 +157,8 @@ def check_destinations(
     for file in destinations:
         if node := readers.get(os.path.realpath(file.path)):
             raise UsageError(f"{file.path}: this file is read by '{node.removeprefix('inputs.')}'; write to another")
-        sizes = {layer: plan.surfaces[plan.outputs[name]].size for layer, name in file.layers.items()}
+        surfaces = {layer: plan.surfaces[plan.outputs[name]] for layer, name in file.layers.items()}
+        sizes = {layer: surface.frame or surface.size for layer, surface in surfaces.items()}
         if is_video(str(file.path)):
             media.check_video(
                 file.path, file.kinds, sizes, codec=settings.codec, encoding=file.encoding, sandbox=sandbox
@@ -178,6 +179,25 @@ def select_half_outputs(files: Sequence[Destination], settings: OutputSettings) 
             )
             (half_outputs if rounds else other_outputs).add(name)
     return frozenset(half_outputs - other_outputs)
+
+
+def select_whole_outputs(graph: Graph, request: RenderRequest, files: Sequence[Destination]) -> frozenset[str]:
+    """The outputs whose pixels beyond the frame are wanted, and that some file can hold."""
+    exr_files = (file for file in files if file.path.suffix.casefold() == ".exr")
+    ports = {name: _find_port(request, name) for file in exr_files for name in file.layers.values()}
+    return frozenset(
+        name for name, port in ports.items() if port.node == OUTPUTS and graph.outputs[port.socket].overscan
+    )
+
+
+def find_frames(file: Destination, plan: Plan) -> dict[str, PixelRectangle]:
+    """Where the frame lies in those layers of which more pixels are made."""
+    surfaces = {layer: plan.surfaces[plan.outputs[name]] for layer, name in file.layers.items()}
+    return {
+        layer: (-surface.window.x, -surface.window.y, *surface.frame)
+        for layer, surface in surfaces.items()
+        if surface.window and surface.frame
+    }
 
 
 def _describe_destination(

@@ -24,8 +24,10 @@ from .destinations import (
     check_destinations,
     choose_views,
     create_folders,
+    find_frames,
     plan_destinations,
     select_half_outputs,
+    select_whole_outputs,
 )
 from .header import compute_frame_key, has_key, make_header, matches_key
 from .reports import FrameReport, ItemReport
@@ -83,7 +85,12 @@ class ItemSession:
         self._files = plan_destinations(item.graph, item.request, item.settings, item.frames, renderer.sandbox)
         first = self._files[item.frames[0]]
         by_rows = select_row_outputs(first) if renderer.device.target.memory else frozenset[str]()
-        self._request = replace(item.request, halves=select_half_outputs(first, item.settings), by_rows=by_rows)
+        self._request = replace(
+            item.request,
+            halves=select_half_outputs(first, item.settings),
+            by_rows=by_rows,
+            whole=select_whole_outputs(item.graph, item.request, first),
+        )
         self.item, self._renderer, self._graph_text, self._hashes = item, renderer, graph_text, hashes
         self.frame_renderer = self._open_frame_renderer()
         bound = renderer.pictures.bind(item.graph, self._request.bound_inputs)
@@ -146,7 +153,9 @@ class ItemSession:
                 continue
             header = self._make_header(task, file)
             layers = {layer: outputs[name] for layer, name in file.layers.items()}
+            frames = find_frames(file, task.plan)
             if file.path in settings.videos:
+                layers = {layer: media.cut_to_frame(array, frames.get(layer)) for layer, array in layers.items()}
                 self._video_writers.add_frame(file, layers, task.frame, header)
                 continue
             media.write_picture(
@@ -158,6 +167,7 @@ class ItemSession:
                 metadata=header,
                 encoding=file.encoding,
                 frame=task.frame,
+                frames=frames,
                 sandbox=self._renderer.sandbox,
             )
 
