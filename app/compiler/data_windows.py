@@ -35,7 +35,7 @@ from msgspec.structs import replace
 
 from .areas import Neighborhood, Region
 from .fusion.fuse import PassGroup
-from .ir import Call, Convolve, Crop, Gather, LoweredProgram, Op, OpaqueProgram, Parameter, Placement, Read, Ref
+from .ir import Call, Convolve, FrameCrop, Gather, LoweredProgram, Op, OpaqueProgram, Parameter, Placement, Read, Ref
 from .tiling.regions import find_regions
 
 _ROUNDING = 1e-6
@@ -124,7 +124,7 @@ def _crop_outputs(program: LoweredProgram, whole: Set[str]) -> LoweredProgram:
             shape = program.shape(ref)
             glsl = glsl_type(shape.channels)
             owner = program.ops[ref.op].owner
-            ops.append(Crop((shape,), owner, "primitive/convert", f"as_{glsl}", (Parameter(glsl, ref),)))
+            ops.append(FrameCrop((shape,), owner, "primitive/convert", f"as_{glsl}", (Parameter(glsl, ref),)))
             outputs[name] = Ref(len(ops) - 1)
     return replace(program, ops=tuple(ops), outputs=MappingProxyType(outputs))
 
@@ -141,7 +141,7 @@ def _(op: Read, pictures: _Pictures, most: Region) -> Region | None:
 
 
 @_find_window.register
-def _(op: Crop, pictures: _Pictures, most: Region) -> Region | None:
+def _(op: FrameCrop, pictures: _Pictures, most: Region) -> Region | None:
     return Region.whole(op.size)
 
 

@@ -161,7 +161,7 @@ class Call(FunctionOp, frozen=True):
         return library.is_cheap(self.shader, self.function, self.owner)
 
 
-class Crop(Call, frozen=True):
+class FrameCrop(Call, frozen=True):
     """A copy of a picture that ends at its frame."""
 
 
