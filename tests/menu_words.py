@@ -65,9 +65,12 @@ BLENDER = {
     "Checker Texture": "checker",
     "Gradient Texture": "ramp",
     "Noise Texture": "noise",
+    "Gabor Texture": "gabor_noise",
 }
 
 NUKE = {
+    "GridWarp": "grid_warp",
+    "SplineWarp": "spline_warp",
     "Read": "read_image read_render",
     "Constant": "constant",
     "CheckerBoard": "checker",
@@ -139,6 +142,7 @@ NUKE = {
 }
 
 FUSION = {
+    "Grid Warp": "grid_warp",
     "Loader": "read_image read_render",
     "Background": "constant ramp",
     "FastNoise": "noise",
@@ -188,6 +192,10 @@ FUSION = {
 }
 
 AFTER_EFFECTS = {
+    "Mesh Warp": "grid_warp",
+    "Bezier Warp": "grid_warp",
+    "Reshape": "spline_warp",
+    "Detail-preserving Upscale": "upscale",
     "Camera Lens Blur": "depth_of_field",
     "Compound Blur": "variable_blur",
     "Fast Box Blur": "box_blur",
