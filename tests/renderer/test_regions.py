@@ -46,6 +46,7 @@ ANYWHERE = frozenset(
         "edge_extend",
         "eye_glare",
         "fill_holes",
+        "histogram",
         "inpaint",
         "kaleidoscope",
         "kernel_glare",
@@ -54,11 +55,13 @@ ANYWHERE = frozenset(
         "photoreceptor_tone_map",
         "polar",
         "screen_clean_plate",
+        "spline_warp",
         "st_map",
         "sun_beams",
+        "upscale",
     }
 )
-"""Nodes that may read everything for a pixel, at their own values."""
+"""Nodes that may read everything for a pixel, at their own values, or make a picture of another size."""
 
 
 def inputs_of(node: Node, some: bool) -> dict[str, object]:
