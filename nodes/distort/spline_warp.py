@@ -57,7 +57,7 @@ class SplineWarp(Filter):
         Slider(
             0.5, 3.0, unit="ratio", minimum=0.0, maximum=8.0, doc="b: how much more near curves count than far ones."
         ),
-    ] = 1.5
+    ] = 2.0
     by_length: Annotated[
         Fraction, Doc("p: whether long curves count more: 0 is no, 1 is in proportion to their length.")
     ] = 0.5

@@ -41,6 +41,7 @@ TIME = {
     "ink_boil",
     "light_painting",
     "long_exposure",
+    "morph",
     "out_of_the_tunnel",
     "rack_focus",
     "turntable",
