@@ -20,6 +20,7 @@ SETTINGS: dict[str, dict[str, object]] = {
     "curves": {"master": (0.0, 0.1, 1.0, 0.7)},
     "exposure": {"stops": -1.5},
     "levels": {"gamma": 1.7},
+    "grid_warp": {"point_22": (0.4, 0.4)},
     "lens_distortion": {"k1": 0.3},
     "crop": {"top_left": (0.2, 0.1), "resize": False},
     "transform": {"rotation": 20.0, "scale": (0.8, 0.7)},
