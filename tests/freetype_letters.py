@@ -1,4 +1,4 @@
-"""Letters by FreeType, as a second opinion: thirty-two times as large, and made smaller by their mean."""
+"""Letters by FreeType, as a second opinion: many times as large, and made smaller by their mean."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from freetype import raw
 from freetype.ft_enums.ft_load_flags import FT_LOAD_FLAGS
 from freetype.ft_enums.ft_pixel_modes import FT_PIXEL_MODES
 
-SCALE = 32
+MOST = 16384
+"""Pixels of the longer side of what FreeType fills: it counts in bytes, and more of them only take memory."""
 
 
 def draw_letters(
@@ -23,19 +24,20 @@ def draw_letters(
     Where two glyphs cover parts of a pixel, the larger part counts.
     """
     face = freetype.Face(str(font))
-    width, height = size[0] * SCALE, size[1] * SCALE
+    scale = min(32, max(4, MOST // max(size)))
+    width, height = size[0] * scale, size[1] * scale
     cover = np.zeros((size[1], size[0]), np.float64)
     for number, x, y in glyphs:
         face.load_glyph(number, FT_LOAD_FLAGS["FT_LOAD_NO_SCALE"])
         outline = face.glyph.outline._FT_Outline
         if not outline.n_points:
             continue
-        unit = em / face.units_per_EM * SCALE * 64.0
+        unit = em / face.units_per_EM * scale * 64.0
         for place in range(outline.n_points):
             point = outline.points[place]
-            point.x = round(point.x * unit + x * SCALE * 64.0)
-            point.y = round(point.y * unit + (size[1] - y) * SCALE * 64.0)
-        letter = _fill(outline, width, height).reshape(size[1], SCALE, size[0], SCALE).mean((1, 3))
+            point.x = round(point.x * unit + x * scale * 64.0)
+            point.y = round(point.y * unit + (size[1] - y) * scale * 64.0)
+        letter = _fill(outline, width, height).reshape(size[1], scale, size[0], scale).mean((1, 3)) / 255.0
         cover = np.maximum(cover, letter)
     return cover
 
@@ -47,4 +49,4 @@ def _fill(outline: Structure, width: int, height: int) -> np.ndarray:
     bitmap.num_grays, bitmap.pixel_mode = 256, FT_PIXEL_MODES["FT_PIXEL_MODE_GRAY"]
     bitmap.buffer = cast(pixels.ctypes.data, POINTER(c_ubyte))
     assert raw.FT_Outline_Get_Bitmap(freetype.get_handle(), byref(outline), byref(bitmap)) == 0
-    return pixels / 255.0
+    return pixels

@@ -8,8 +8,9 @@ are marked `nightly`.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 import pytest
 from _pytest.mark import ParameterSet
@@ -67,6 +68,12 @@ def _leave_out(config: pytest.Config, items: list[pytest.Item], is_left_out: Cal
     left_out = [item for item in items if is_left_out(item)]
     items[:] = [item for item in items if not is_left_out(item)]
     config.hook.pytest_deselected(items=left_out)
+
+
+def list_cases(daily: Iterable[Any], nightly: Iterable[Any]) -> list[Any]:
+    """Cases of each run, then those of the night, where a tuple has the arguments of several names."""
+    more = (case if isinstance(case, tuple) else (case,) for case in nightly)
+    return [*daily, *(pytest.param(*case, marks=pytest.mark.nightly) for case in more)]
 
 
 @pytest.fixture(scope="session")

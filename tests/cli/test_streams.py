@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from oiio_pictures import write_picture
+from selection import list_cases
 
 GRAPH = {
     "halation": 1,
@@ -25,8 +26,6 @@ PRINTING = (
     ("check", "g.json", "--json"),
     ("check", "--rules"),
     ("nodes",),
-    ("nodes", "--json"),
-    ("schema",),
     ("explain", "g.json"),
     ("diff", "g.json", "g.json", "--json"),
     ("merge", "g.json", "g.json", "g.json"),
@@ -36,6 +35,8 @@ PRINTING = (
     ("render", "--help"),
     ("--version",),
 )
+LONG = (("nodes", "--json"), ("schema",))
+"""These print much, by what prints the others too."""
 
 
 @pytest.fixture(scope="module")
@@ -64,7 +65,7 @@ def written(folder: Path) -> Path:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX streams")
-@pytest.mark.parametrize("words", PRINTING, ids=" ".join)
+@pytest.mark.parametrize("words", list_cases(PRINTING, [(words,) for words in LONG]), ids=" ".join)
 def test_every_command_that_prints(written, words):
     ended = run(written, words, preexec_fn=close(1))
     assert ended.returncode == 1 and "standard output is closed" in ended.stderr

@@ -131,8 +131,8 @@ def test_the_memory_limit_holds_while_code_compiles(tmp_path: Path) -> None:
 @pytest.mark.skipif(sys.platform != "linux", reason="it lists the processes of another one")
 @pytest.mark.parametrize("processes", [1, 2])
 def test_code_that_ends_its_process(tmp_path: Path, processes: int) -> None:
-    """A driver that dies takes one process with it; the other one says whose code it was."""
-    words = ("-o", tmp_path / "o.##.exr", "--frames", "1-2", "-j", processes)
+    """A driver that dies takes one process with it; the other one says whose code it was, when it has no time left."""
+    words = ("-o", tmp_path / "o.##.exr", "--frames", "1-2", "-j", processes, "--timeout", 8)
     command = [*HALATION, "render", *map(str, (graph(tmp_path, ENDLESS), *words)), "--json"]
     started = subprocess.Popen(
         command,

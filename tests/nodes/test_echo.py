@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from halation.nodes.time.echo import Echo
+from selection import list_cases
 from sequences import node_at, noise_at, noise_graph
 
 
@@ -30,8 +31,15 @@ def expected(mode: str, frames: list[np.ndarray], decay: float) -> np.ndarray:
     return found
 
 
-@pytest.mark.parametrize("mode", ["brightest", "add", "screen", "average", "behind", "in front"])
-@pytest.mark.parametrize(("echoes", "spacing", "decay"), [(3, 2, 0.6), (2, -1, 0.5), (1, 3, 1.0), (20, 1, 0.9)])
+FEW, MANY = ((3, 2, 0.6), (2, -1, 0.5), (1, 3, 1.0)), (20, 1, 0.9)
+MODES = ("brightest", "add", "screen", "average", "behind", "in front")
+CASES = [(mode, *values) for values in FEW for mode in MODES]
+
+
+@pytest.mark.parametrize(
+    ("mode", "echoes", "spacing", "decay"),
+    list_cases([*CASES, ("average", *MANY)], [(mode, *MANY) for mode in MODES if mode != "average"]),
+)
 def test_echoes_are_earlier_frames(renderer, mode, echoes, spacing, decay):
     graph = noise_graph(Echo(mode=mode, echoes=echoes, spacing=spacing, decay=decay))
     frames = [noise_at(renderer, graph, 4 - back * spacing) for back in range(echoes + 1)]

@@ -6,11 +6,14 @@ fisheye camera is a second witness.
 
 from __future__ import annotations
 
+from itertools import chain
+
 import cv2
 import numpy as np
 import pytest
 from halation.nodes.distort.panorama import Panorama
 from scipy.spatial.transform import Rotation
+from selection import list_cases
 
 PROJECTIONS = ("lat-long", "cube strip", "cube cross", "fisheye", "mirror ball", "little planet", "perspective")
 SIZES = {
@@ -85,8 +88,14 @@ def draw(projection: str) -> np.ndarray:
     return np.nan_to_num(smooth(directions(projection, SIZES[projection])))
 
 
-@pytest.mark.parametrize("target", PROJECTIONS)
-@pytest.mark.parametrize("source", PROJECTIONS)
+STEPS = [
+    [(source, PROJECTIONS[(number + step) % len(PROJECTIONS)]) for number, source in enumerate(PROJECTIONS)]
+    for step in range(len(PROJECTIONS))
+]
+"""Pairs by how far they stand apart: the first three have each projection read by itself, from and to two others."""
+
+
+@pytest.mark.parametrize(("source", "target"), list_cases(chain(*STEPS[:3]), chain(*STEPS[3:])))
 def test_every_projection_reads_every_other(run, source, target):
     yaw, pitch, roll = (20.0, 15.0, 10.0) if source == "perspective" else (35.0, -50.0, 20.0)
     node = Panorama(

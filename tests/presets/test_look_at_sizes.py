@@ -140,14 +140,18 @@ def test_a_proxy_is_the_same_look(name: str, renderer: Renderer) -> None:
     assert measure_flip(encode(proxy), encode(small), linear=False) <= 0.02
 
 
+@pytest.mark.parametrize("name", PRESETS)
+def test_lengths_are_meant_for_1080_lines(name: str) -> None:
+    assert load_preset(name).settings.reference_height == 1080
+
+
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     "name",
     [pytest.param(name, marks=pytest.mark.timeout(3600 if name in BRUSHES else 900)) for name in PRESETS],
 )
-def test_every_preset_at_540_and_2160_lines(name: str, renderer: Renderer, is_nightly: bool) -> None:
-    """Every night. A third of the presets has lines, dots or hard edges, which FLIP sees in the smaller picture."""
-    assert load_preset(name).settings.reference_height == 1080
-    if is_nightly:
-        difference, small, large = measure_sizes(renderer, name, 540, 2160)
-        assert difference <= 0.11
-        assert encode(large).mean() == pytest.approx(encode(small).mean(), rel=0.1)
+def test_every_preset_at_540_and_2160_lines(name: str, renderer: Renderer) -> None:
+    """A third of the presets has lines, dots or hard edges, which FLIP sees in the smaller picture."""
+    difference, small, large = measure_sizes(renderer, name, 540, 2160)
+    assert difference <= 0.11
+    assert encode(large).mean() == pytest.approx(encode(small).mean(), rel=0.1)

@@ -6,10 +6,11 @@ After a change that is meant to be seen, look at the pictures (`./dev demo`), th
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable, Iterator
 from functools import cache
-from itertools import pairwise
+from itertools import pairwise, product
 from pathlib import Path
 
 import cv2
@@ -120,6 +121,11 @@ def small_scale(name: str) -> float:
     return 0.25 if loaded(name).settings.size or name in TIME else 0.5
 
 
+def list_views(name: str) -> list[tuple[float, float]]:
+    """Scales and parts of the range of frames, quick ones first: a control need not show in all of them."""
+    return [*product((0.125, 0.25, small_scale(name)), (0.2, 0.5) if name in TIME else (0.5,))]
+
+
 def shrunk(light: Array, width: int, height: int) -> Array:
     return cv2.resize(light, (width, height), interpolation=cv2.INTER_AREA)
 
@@ -137,24 +143,24 @@ class PictureTable(dict[str, Array]):
 
 
 @pytest.fixture(scope="module")
-def raw(renderer: Renderer) -> PictureTable:
-    """What all presets make at full size, scene-linear."""
-    return PictureTable(lambda name: rendered(renderer, loaded(name)))
+def brightest() -> dict[str, float]:
+    """The largest scene-linear number of the presets that were rendered; NaN where a pixel is not finite."""
+    return {}
 
 
 @pytest.fixture(scope="module")
-def full(raw: PictureTable) -> PictureTable:
-    """The same as light of the display."""
-    return PictureTable(lambda name: show_light(raw[name], loaded(name).outputs["image"].view))
+def full(renderer: Renderer, brightest: dict[str, float]) -> PictureTable:
+    """What all presets make at full size, as light of the display."""
+
+    def make(name: str) -> Array:
+        pixels = rendered(renderer, loaded(name))
+        brightest[name] = float(pixels[..., :3].max()) if np.isfinite(pixels).all() else math.nan
+        return show_light(pixels, loaded(name).outputs["image"].view)
+
+    return PictureTable(make)
 
 
-@pytest.fixture(scope="module")
-def half(renderer: Renderer) -> PictureTable:
-    """The same at half size."""
-    return PictureTable(lambda name: picture(renderer, loaded(name), scale=0.5))
-
-
-@pytest.fixture(scope="module")
+@pytest.fixture
 def forgetful() -> Iterator[Renderer]:
     """An engine that keeps no results."""
     made = Renderer(budget=0, sandbox=UNRESTRICTED)
@@ -210,20 +216,21 @@ def ends(graph: Graph, item: Control) -> tuple[object, ...]:
 
 @each
 def test_every_control_changes_the_picture(name: str, renderer: Renderer) -> None:
-    """To either end, in a small picture; of what moves, if need be, at two frames."""
+    """To either end, in a small picture; if need be in larger ones, and of what moves at two frames."""
     graph = loaded(name)
     assert 2 <= len(graph.controls) <= 5
-    scale = small_scale(name)
-    parts = (0.2, 0.5) if name in TIME else (0.5,)
-    before = {part: encoded(picture(renderer, graph, scale, part)) for part in parts}
+    before: dict[tuple[float, float], Array] = {}
     for control, item in graph.controls.items():
         assert item.label and item.doc
         most = 0.0
-        for part in parts:
-            for end in ends(graph, item) if most <= 0.3 else ():
-                changed = encoded(picture(renderer, graph.set_control(control, end), scale, part))
-                assert np.isfinite(changed).all(), (control, end)
-                most = max(most, np.abs(changed - before[part]).mean())
+        for view, end in product(list_views(name), ends(graph, item)):
+            if view not in before:
+                before[view] = encoded(picture(renderer, graph, *view))
+            changed = encoded(picture(renderer, graph.set_control(control, end), *view))
+            assert np.isfinite(changed).all(), (control, end)
+            most = max(most, np.abs(changed - before[view]).mean())
+            if most > 0.3 and end == ends(graph, item)[-1]:
+                break
         assert most > 0.3, control
 
 
@@ -240,19 +247,19 @@ def test_it_moves(name: str, renderer: Renderer) -> None:
 
 
 @each
-def test_nothing_is_crushed_or_clipped(name: str, raw: PictureTable, full: PictureTable) -> None:
-    assert np.isfinite(raw[name]).all()
+def test_nothing_is_crushed_or_clipped(name: str, full: PictureTable, brightest: dict[str, float]) -> None:
     assert full[name].shape == (*size_of(loaded(name))[::-1], 3)
+    assert math.isfinite(brightest[name])
     assert (full[name].max(2) < 0.001).mean() < 0.04
     assert (full[name].min(2) > 0.999).mean() < 0.01
     assert encoded(full[name]).std() > 15.0
 
 
 @each
-def test_half_size_looks_the_same(name: str, half: PictureTable, full: PictureTable) -> None:
+def test_half_size_looks_the_same(name: str, renderer: Renderer, full: PictureTable) -> None:
     """Mean difference of sRGB below 6/255; where fine lines or dots are drawn, a correlation above 0.75."""
     graph = loaded(name)
-    proxy = encoded(half[name])
+    proxy = encoded(picture(renderer, graph, scale=0.5))
     width, height = size_of(graph)
     expected = encoded(shrunk(full[name], width // 2, height // 2))
     if FINE & used(name, "id"):
@@ -261,8 +268,15 @@ def test_half_size_looks_the_same(name: str, half: PictureTable, full: PictureTa
         assert np.abs(proxy - expected).mean() < 6.0
 
 
-@each
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=() if name in TIME or not number % 4 else pytest.mark.nightly)
+        for number, name in enumerate(PRESETS)
+    ],
+)
 def test_rendering_twice_gives_the_same_bytes(name: str, forgetful: Renderer) -> None:
+    """Every day what moves and a quarter of the others: tests/nodes/test_promises.py asks every node for it."""
     wanted, part = RenderRequest(scale=small_scale(name)), 0.1 if name in TIME else 0.5
     first = rendered(forgetful, loaded(name), wanted, part).tobytes()
     passes = forgetful.runner.counters.passes
@@ -298,14 +312,16 @@ def test_no_thumbnail_is_left_over() -> None:
     assert {file.stem for file in thumbnail(paths()[0]).parent.iterdir()} == PRESETS.keys()
 
 
-def test_a_display_view_goes_with_tone_mapping(renderer: Renderer, raw: PictureTable, tmp_path: Path) -> None:
+def test_a_display_view_goes_with_tone_mapping(
+    renderer: Renderer, full: PictureTable, brightest: dict[str, float], tmp_path: Path
+) -> None:
     """What a tone map finished is not tone mapped again by the view, unless someone asks for one.
 
     What ends at 1 is finished, but for what is lit anew: that may just be dim.
     """
     for name in PRESETS:
         lit = "deferred_lighting" in used(name, "id")
-        ends = raw[name][..., :3].max() < 1.5
+        ends = full[name].size > 0 and brightest[name] < 1.5
         assert loaded(name).outputs["image"].view == ("none" if ends and not lit else ""), name
     graph = loaded("night_street")
     for view, expected in (("", "none"), ("ACES", "ACES")):

@@ -33,6 +33,9 @@ _SQUARE = 12
 """Colors of the sheet and pixels of a square of the checkerboard: chosen by eye. The background is dark and neutral, so
 that it does not change how the pictures look."""
 _BOLD = "DroidSans-Bold"
+_ROWS = 256
+"""Rows of a sheet that are converted at a time: the sheet of all nodes has 7,796, and each step in between is as large
+as what it converts."""
 _QUALITY = 82
 """JPEG quality of sheets, on the scale of libjpeg. Chosen by eye: no blocks are visible at 1:1, and the sheets in the
 documentation take a third less than at 95."""
@@ -75,7 +78,7 @@ def make_caption(light: Array, lines: Sequence[str]) -> Array:
     for index, line in enumerate(lines):
         at = (width // 2, round(top + index * letters * 1.5))
         oiio.ImageBufAlgo.render_text(paper, *at, line, letters, "", _TEXT, "center", "center")
-    return decode_srgb(_pixels(paper)).astype(np.float32)
+    return _read_light(paper)
 
 
 def make_sheet(pictures: Mapping[str, Array], columns: int = 4, width: int = 0) -> Array:
@@ -117,7 +120,7 @@ def make_grouped_sheet(
         if name:
             left, top, _ = layout.rule(name)
             oiio.ImageBufAlgo.render_text(paper, left, top - letters // 2, _spell_out(name), letters + 3, _BOLD, _TEXT)
-    return decode_srgb(_pixels(paper)).astype(np.float32)
+    return _read_light(paper)
 
 
 def make_grid_sheet(
@@ -152,13 +155,16 @@ def make_grid_sheet(
         _label(paper, text, x, head - letters // 3, cell[0], letters)
     for text, y in zip(down, y_at, strict=True):
         draw(paper, left - _GAP, y + cell[1] // 2, _spell_out(text), letters, "", _DIM, "right", "center")
-    return decode_srgb(_pixels(paper)).astype(np.float32)
+    return _read_light(paper)
 
 
 def write_sheet(path: str | Path, light: Array, description: str = "", *, sandbox: Sandbox) -> None:
     """Write a sheet as JPEG, small enough for a page. Raises OutputError."""
-    pixels = np.ascontiguousarray((_encode_srgb(light) * 255.0 + 0.5).astype(np.uint8))
-    spec = oiio.ImageSpec(pixels.shape[1], pixels.shape[0], 3, "uint8")
+    height, width, channels = light.shape
+    pixels = np.empty((height, width, channels), np.uint8)
+    for top in range(0, height, _ROWS):
+        pixels[top : top + _ROWS] = _encode_srgb(light[top : top + _ROWS]) * 255.0 + 0.5
+    spec = oiio.ImageSpec(width, height, channels, "uint8")
     spec.attribute("compression", f"jpeg:{_QUALITY}")
     spec.attribute("jpeg:subsampling", "4:2:0")
     spec.attribute("ImageDescription", description)
@@ -268,7 +274,7 @@ def _scale_to_fit(light: Array, cell: tuple[int, int], scale: float) -> Array:
     resized = oiio.ImageBufAlgo.resize(
         oiio.ImageBuf(source), filtername="catmull-rom", roi=oiio.ROI(0, width, 0, height)
     )
-    return np.clip(_pixels(resized), 0.0, 1.0)
+    return np.clip(np.asarray(resized.get_pixels(oiio.FLOAT), np.float32), 0.0, 1.0)
 
 
 def _three(array: Array) -> Array:
@@ -292,5 +298,9 @@ def _encode_srgb(light: Array) -> Array:
     return codes.astype(np.float32)
 
 
-def _pixels(buffer: oiio.ImageBuf) -> Array:
-    return np.asarray(buffer.get_pixels(oiio.FLOAT), np.float32)
+def _read_light(paper: oiio.ImageBuf) -> Array:
+    """The display values of what was drawn in sRGB."""
+    light = np.ascontiguousarray(paper.get_pixels(oiio.FLOAT), np.float32)
+    for top in range(0, len(light), _ROWS):
+        light[top : top + _ROWS] = decode_srgb(light[top : top + _ROWS])
+    return light
