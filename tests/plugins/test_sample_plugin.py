@@ -200,9 +200,9 @@ def test_what_a_node_does_not_keep_is_said(site: Path, tmp_path: Path, case: str
     code, shader, sentence = FAULTY[case]
     (copy / "acme_glow" / "nodes" / "glow" / "soft_glow.py").write_text(code)
     (copy / "acme_glow" / "shaders" / "glow" / "soft_glow.glsl").write_text(shader)
-    result = halation(copy, "nodes", "--check")
-    assert result.returncode == 1 and sentence in result.stdout, result
-    assert sentence in halation(copy, "nodes", "--check", "acme_glow.soft_glow").stdout
+    for words in ((), ("acme_glow.soft_glow",)) if case == "range" else ((),):
+        result = halation(copy, "nodes", "--check", *words)
+        assert result.returncode == 1 and sentence in result.stdout, result
 
 
 def test_a_plugin_that_cannot_be_loaded_keeps_nothing(site: Path, tmp_path: Path) -> None:

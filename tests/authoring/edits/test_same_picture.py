@@ -20,8 +20,9 @@ from halation.resources.picture import Picture
 from halation.resources.sandbox import UNRESTRICTED
 from headers import Headers
 from random_graphs import SIZE, random_graph
+from selection import list_seeds
 
-SEEDS = range(60)
+SEEDS = list_seeds(20, 60)
 
 
 def keys(graph: Graph) -> dict[str, str]:
@@ -159,7 +160,7 @@ def test_a_chain_put_into_a_link_is_as_wired_by_hand(seed):
         break
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", list_seeds(10, 30))
 def test_saving_in_another_folder_and_back(seed):
     graph, _ = made(seed)
     graph = graph.add("photo", catalogue()["read_image"](path="plates/a.exr"))
