@@ -58,7 +58,8 @@ class Preferences:
 
     `recent` has the newest first. `folders` are those used last, by purpose. `autosave` is in seconds,
     `memory_budget` in MiB. `isf_folders` hold shaders that can be added, `preset_folders` presets. `swatches` are
-    colors that the user keeps. `extra` is what another version of Halation wrote.
+    colors that the user keeps. `lessons` are those that were finished, by their ids. `extra` is what another
+    version of Halation wrote.
     """
 
     theme: Literal["dark", "light", "contrast"] = "dark"
@@ -79,6 +80,7 @@ class Preferences:
     isf_folders: tuple[str, ...] = ()
     preset_folders: tuple[str, ...] = ()
     swatches: tuple[SwatchColor, ...] = ()
+    lessons: tuple[str, ...] = ()
     extra: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType[str, Any]({}))
 
 

@@ -11,6 +11,14 @@ from ..resources.sandbox import Sandbox, read_process_sandbox
 from . import parsing
 from .options import Inputs, locate_graph, resolve_inputs
 
+_Lesson = Annotated[
+    str,
+    typer.Option(
+        metavar="NAME",
+        help="Begin a lesson of the course: its name, or next for the first one that is not finished; list prints all.",
+    ),
+]
+
 
 def edit(
     graph: Annotated[
@@ -23,6 +31,7 @@ def edit(
         ),
     ] = None,
     inputs: Inputs = None,
+    lesson: _Lesson = "",
     show_errors: Annotated[
         bool, typer.Option("--show-errors", hidden=True, help="Show an error in a window: a menu has no terminal.")
     ] = False,
@@ -31,7 +40,9 @@ def edit(
     from ..errors import HalationError
 
     try:
-        return _open_editor(graph, inputs)
+        if lesson == "list":
+            return _print_lessons()
+        return _open_editor(graph, inputs, lesson)
     except HalationError as fault:
         if show_errors:
             from ..desktop import show_error
@@ -40,9 +51,11 @@ def edit(
         raise
 
 
-def _open_editor(graph: Path | None, inputs: list[str] | None) -> int:
+def _open_editor(graph: Path | None, inputs: list[str] | None, lesson: str) -> int:
     from ..errors import UsageError
 
+    if lesson and graph is not None:
+        raise UsageError("--lesson brings a graph of its own: leave out the other one")
     if graph is None and inputs:
         raise UsageError("-i needs a graph: name the graph file too")
     sandbox = read_process_sandbox()
@@ -57,7 +70,34 @@ def _open_editor(graph: Path | None, inputs: list[str] | None) -> int:
         bindings = resolve_inputs(document.load(graph, sandbox=sandbox), parsing.parse_inputs(inputs))
     from ..editor import edit as open_editor
 
-    open_editor(graph, bindings, sandbox)
+    open_editor(graph, bindings, sandbox, _find_lesson(lesson) if lesson else "")
+    return 0
+
+
+def _find_lesson(name: str) -> str:
+    """The id of a lesson; for `next` that of the first one that is not finished. Raises UsageError."""
+    from ..authoring.preferences import PreferenceStore
+    from ..editor.tutorials.course import COURSE
+    from ..errors import UsageError
+    from ..graph import did_you_mean
+
+    ids = [lesson.id for lesson in COURSE]
+    if name == "next":
+        finished = PreferenceStore().current.lessons
+        return next((id for id in ids if id not in finished), ids[0])
+    if name not in ids:
+        raise UsageError(f"--lesson {name}: there is no such lesson{did_you_mean(name, ids)}")
+    return name
+
+
+def _print_lessons() -> int:
+    from ..authoring.preferences import PreferenceStore
+    from ..editor.tutorials.course import COURSE
+
+    finished = PreferenceStore().current.lessons
+    for number, lesson in enumerate(COURSE, 1):
+        mark = "done" if lesson.id in finished else ""
+        print(f"{number:>2}  {lesson.id:<19} {mark:<5} {lesson.doc}")
     return 0
 
 

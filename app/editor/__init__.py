@@ -48,12 +48,12 @@ from pathlib import Path
 from ..resources.sandbox import Sandbox
 
 
-def edit(path: Path | None, bindings: Mapping[str, str] | None, sandbox: Sandbox) -> None:
+def edit(path: Path | None, bindings: Mapping[str, str] | None, sandbox: Sandbox, lesson: str = "") -> None:
     """Open the editor on a graph file, a picture, or on the start screen; returns when its window is closed.
 
-    `bindings` are files for graph inputs by name. Raises DocumentError for a file that cannot be read, DeviceError
-    where no window can be opened.
+    `bindings` are files for graph inputs by name. `lesson` is the id of a lesson of the course to begin. Raises
+    DocumentError for a file that cannot be read, DeviceError where no window can be opened.
     """
     from .window import open_window
 
-    open_window(path, dict(bindings or {}), sandbox)
+    open_window(path, dict(bindings or {}), sandbox, lesson)

@@ -6,6 +6,7 @@ import numpy as np
 from msgspec import Struct
 
 from ..compiler import Surface
+from ..media.comparison.data_range import find_data_range
 from ..media.pictures.stored import Array, StoredPart, encode_for_viewing
 from ..media.pictures.thumbnail import shrink_to_fit
 
@@ -19,7 +20,7 @@ class SurfacePicture(Struct, frozen=True, eq=False):
 
 
 def picture_surface(array: Array, surface: Surface, view: str, width: int) -> SurfacePicture:
-    """The pixels of a surface, at most `width` across: light through a view, data from its least number to its largest.
+    """The pixels of a surface, at most `width` across: light through a view, data over its range.
 
     `array` is [height, width, channels].
     """
@@ -28,6 +29,5 @@ def picture_surface(array: Array, surface: Surface, view: str, width: int) -> Su
         return SurfacePicture(encode_for_viewing(StoredPart(small, ("R", "G", "B", "A"), False), view), None)
     step = max(1, -(-array.shape[1] // width))
     small = np.ascontiguousarray(array[::step, ::step], np.float32)  # a mean of data lies on no surface
-    finite = small[np.isfinite(small)]
-    span = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+    span = find_data_range(small)
     return SurfacePicture(encode_for_viewing(StoredPart(small, ("data",), False), "", span), span)

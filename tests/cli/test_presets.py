@@ -59,6 +59,26 @@ def test_the_editor_opens_it(cli, empty, monkeypatch):
     assert opened == [BLOOM]
 
 
+def test_the_editor_begins_a_lesson_by_its_name_or_the_next_one(cli, empty, monkeypatch):
+    from halation import editor
+    from halation.authoring.preferences import PreferenceStore
+
+    monkeypatch.setenv("HALATION_STATE", str(empty))
+    opened = []
+    monkeypatch.setattr(editor, "edit", lambda path, bindings, sandbox, lesson: opened.append((path, lesson)))
+    assert cli("edit", "--lesson", "adaptation").code == cli("edit", "--lesson", "next").code == 0
+    store = PreferenceStore(empty)
+    store.change(lessons=("buffers",))
+    store.flush()
+    assert cli("edit", "--lesson", "next").code == 0
+    assert opened == [(None, "adaptation"), (None, "buffers"), (None, "convolution")]
+    lines = cli("edit", "--lesson", "list").out.splitlines()
+    assert len(lines) == 12 and "buffers" in lines[0] and " done " in lines[0] and " done " not in lines[1]
+    refused = cli("edit", "--lesson", "adaption")
+    assert refused.code == 2 and "adaption: there is no such lesson" in refused.err and "adaptation" in refused.err
+    assert cli("edit", "soft_bloom", "--lesson", "adaptation").code == 2 and len(opened) == 3
+
+
 def test_a_file_of_that_name_wins(cli, empty, graphs):
     shutil.copy(graphs(), empty / "soft_bloom")
     facts = cli("explain", "soft_bloom", "-i", "beauty=none.exr").err

@@ -8,6 +8,7 @@ import pytest
 from gui_driver import Ui
 from halation import presets
 from halation.editor.tutorials.coach import fit_frame, place_card
+from halation.editor.tutorials.course import COURSE
 from halation.editor.tutorials.lessons import LESSONS
 
 Act = Callable[[Ui], object]
@@ -198,3 +199,45 @@ def test_the_frame_stays_inside_of_the_panel_or_dialog_of_its_widget() -> None:
     widgets["dialog Files"] = (200.0, 50.0, 500.0, 250.0)
     assert fit_frame((210.0, 60.0, 490.0, 248.0), widgets, 5.0) == (205.0, 55.0, 495.0, 250.0)
     assert fit_frame((10.0, 310.0, 40.0, 330.0), widgets, 5.0) == (5.0, 305.0, 45.0, 335.0), "the timeline is no panel"
+
+
+def test_a_lesson_of_the_course_shows_passes_is_solved_and_stays_finished(gui) -> None:
+    """From the start screen to the check mark, with the mouse."""
+    lesson = COURSE[2]
+
+    def body(ui: Ui) -> None:
+        ui.click("start lessons")
+        ui.click(f"menu lesson.{lesson.id}")
+        ui.settled()
+        progress = ui.window._contexts.tutorials.progress
+        assert progress.lesson is lesson and lesson.steps[0].widget in ui.editor.places
+        ui.click("tutorial next")
+        ui.until(lambda: len(ui.editor.passes.passes) == 2 and "Passes" in ui.editor.places)
+        assert ui.editor.passes.passes[1].functions == ("convolve x",)
+        ui.click("tutorial next")
+        ui.shot("lesson_task.png")
+        ui.click("tutorial solve")
+        ui.until(lambda: progress.index == 3)
+        ui.until(lambda: len(ui.editor.passes.passes) == 3)
+        assert ui.editor.passes.passes[2].reads == ("1",), "the second pass reads the first"
+        ui.click("tutorial back")
+        ui.wait(5)
+        assert progress.index == 2, "a task that is solved stays while the user reads it again"
+        for _ in range(4):
+            ui.click("tutorial next")
+        assert progress.lesson is None and ui.editor.store.current.lessons == (lesson.id,)
+        assert ui.editor.actions.is_checked(ui.editor.actions[f"lesson.{lesson.id}"])
+
+    gui(body, size=(1400, 900))
+
+
+def test_a_lesson_that_is_not_solved_is_not_finished(gui) -> None:
+    def body(ui: Ui) -> None:
+        ui.window._contexts.tutorials.actions.run("lesson.convolution")
+        ui.settled()
+        progress = ui.window._contexts.tutorials.progress
+        while progress.lesson is not None:
+            ui.click("tutorial next")
+        assert not ui.editor.store.current.lessons
+
+    gui(body)

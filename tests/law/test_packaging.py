@@ -31,7 +31,7 @@ SHIPPED = {
     ),
     "nodes": ("**/*.py", "**/*.bin", "py.typed"),
     "shaders": ("__init__.py", "**/*.glsl"),
-    "presets": ("__init__.py", "*.json", "samples/*", "pictures/*"),
+    "presets": ("__init__.py", "*.json", "samples/*", "pictures/*", "lessons/*"),
 }
 
 COMMIT_TIME = 1_700_000_000

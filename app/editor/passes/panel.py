@@ -72,14 +72,14 @@ class PassesPanel:
             corner = low + ImVec2(pad + (box - across) / 2, (size.y - down) / 2)
             lines.add_image(self._textures.get(index, lambda: codes), corner, corner + ImVec2(across, down))
             imgui.set_cursor_pos(ImVec2(start.x + box + 2 * pad, start.y + pad))
-            self._draw_words(entry, width - box - 3 * pad, size.y - 2 * pad)
+            self._draw_words(index, entry, width - box - 3 * pad, size.y - 2 * pad)
         imgui.set_cursor_pos(after)
         imgui.dummy(ImVec2(0, 0))
 
-    def _draw_words(self, entry: PassPicture, width: float, height: float) -> None:
+    def _draw_words(self, index: int, entry: PassPicture, width: float, height: float) -> None:
         palette = self._context.palette
         imgui.begin_child(
-            f"words{entry.number}{entry.nodes}",
+            f"words{index}",
             ImVec2(width, height),
             window_flags=int(imgui.WindowFlags_.no_inputs) | int(imgui.WindowFlags_.no_scrollbar),
         )

@@ -95,20 +95,22 @@ class StartScreen:
             self._context.actions.run("file.open_render")
         record(self._context, "start open render")
         tip("Start a graph that reads the layers of a render, or a picture or sequence")
-        self._draw_tutorials()
+        self._draw_menu("Tutorials", icons.ICON_FA_GRADUATION_CAP, "tutorial.", "Five minutes each, in the editor")
+        doc = "Twelve short lessons about the techniques of screen-space effects, each with a task"
+        self._draw_menu("Lessons", icons.ICON_FA_BOOK_OPEN, "lesson.", doc)
         if not self._context.store.current.hint_seen:
             self._draw_hint()
 
-    def _draw_tutorials(self) -> None:
-        """Draw the tutorials, which run in the editor."""
-        width = imgui.get_content_region_avail().x
-        if imgui.button(f"{icons.ICON_FA_GRADUATION_CAP}  Tutorials", ImVec2(width, 0)):
-            imgui.open_popup("tutorials")
-        record(self._context, "start tutorials")
-        tip("Five minutes each, in the editor")
-        if imgui.begin_popup("tutorials"):
+    def _draw_menu(self, label: str, icon: str, prefix: str, doc: str) -> None:
+        """Draw a button that lists the actions whose ids begin with `prefix`."""
+        name = f"start {label.lower()}"
+        if imgui.button(f"{icon}  {label}", ImVec2(imgui.get_content_region_avail().x, 0)):
+            imgui.open_popup(name)
+        record(self._context, name)
+        tip(doc)
+        if imgui.begin_popup(name):
             for action in self._context.actions.all:
-                if action.id.startswith("tutorial."):
+                if action.id.startswith(prefix):
                     entry(self._context, action)
             imgui.end_popup()
 

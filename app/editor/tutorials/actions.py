@@ -1,25 +1,26 @@
-"""The actions that open a tutorial."""
+"""The actions that open a tutorial or a lesson of the course."""
 
 from __future__ import annotations
 
 from functools import partial
 
-from halation import presets
-
+from ...media.pictures.file_endings import is_picture
 from ..shared.action import Action
 from .context import TutorialContext
+from .course import COURSE
 from .lesson import Lesson
 from .lessons import LESSONS
 
 
 def open_lesson(context: TutorialContext, lesson: Lesson) -> None:
     """Open the document that a lesson begins with, after asking about unsaved work, and show its first step."""
-    files = {path.stem: path for path in presets.paths()}
-    begin = partial(context.progress.begin, lesson)
-    if lesson.start == "sample":
-        context.documents.open_picture(files["soft_bloom"].parent / "samples" / "neon.exr", begin)
-    else:
-        context.documents.open_preset(files[lesson.start], begin)
+    begin, documents = partial(context.progress.begin, lesson), context.documents
+    (documents.open_picture if is_picture(lesson.start_file) else documents.open_preset)(lesson.start_file, begin)
+
+
+def is_finished(context: TutorialContext, lesson: Lesson) -> bool:
+    """True if the user has been through a lesson."""
+    return lesson.id in context.interface.store.current.lessons
 
 
 TUTORIALS: tuple[Action[TutorialContext], ...] = tuple(
@@ -28,7 +29,19 @@ TUTORIALS: tuple[Action[TutorialContext], ...] = tuple(
         lesson.title,
         partial(open_lesson, lesson=lesson),
         "Help/Tutorials",
+        checked=partial(is_finished, lesson=lesson),
         doc=f"{lesson.doc} Five minutes, on the sample render.",
     )
     for lesson in LESSONS
+) + tuple(
+    Action(
+        f"lesson.{lesson.id}",
+        f"{number}. {lesson.title}",
+        partial(open_lesson, lesson=lesson),
+        "Help/Lessons",
+        checked=partial(is_finished, lesson=lesson),
+        doc=lesson.doc,
+    )
+    for number, lesson in enumerate(COURSE, 1)
 )
+"""The tutorials of the editor, then the course."""

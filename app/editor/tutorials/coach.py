@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
+from ...authoring.edits.ports import is_viewable
+from ...graph import Port
 from ..shared.window_commands import PanelTitle
 from ..theme.style import u32, ui_scale
 from ..toolkit.buttons import quiet_button
 from ..toolkit.keys import display_shortcut
 from ..toolkit.places import Rect
 from ..toolkit.words import SMALL, draw_dim, draw_wrapped, font
-from .lesson import Moment
+from .moment import Moment
 
 if TYPE_CHECKING:
     from .context import TutorialContext
@@ -50,14 +52,36 @@ class Coach:
         step = progress.lesson.steps[progress.index]
         if progress.beginning is None:
             progress.beginning = now
-        elif step.is_done is not None and step.is_done(progress.beginning, now):
+            self._begin(step)
+        elif step.is_done is not None and not progress.went_back and step.is_done(progress.beginning, now):
             if not self._context.interface.dragging:  # a drag ends first
-                progress.go(1)
+                self._go_on(progress.lesson)
             return
         rect = progress.widgets.get(step.widget)
         if rect is not None and (frame := fit_frame(rect, progress.widgets, _OUT * ui_scale())):
             self._draw_frame(frame)
         self._draw_card(progress.lesson, step, rect)
+
+    def _begin(self, step: Step) -> None:
+        """Show what a step is about."""
+        session, port = self._context.session, Port.parse(step.show) if step.show else None
+        if port is not None and is_viewable(session.graph, port):
+            session.views.show(port)
+        if step.panel is not None:
+            self._context.commands.show_panel(step.panel)
+
+    def _go_on(self, lesson: Lesson) -> None:
+        """Go to the next step. A lesson that ends is finished if all its tasks are solved."""
+        context, store = self._context, self._context.interface.store
+        context.progress.go(1)
+        finished = store.current.lessons
+        if context.progress.lesson is None and lesson.id not in finished and lesson.is_solved(context.session.graph):
+            context.log.attempt(lambda: store.change(lessons=(*finished, lesson.id)))
+
+    def _solve(self, step: Step) -> None:
+        """Do what a step asks for, as steps that can be undone."""
+        for command in step.solution:
+            self._context.session.apply(command)
 
     def _draw_frame(self, frame: Rect) -> None:
         """Draw a frame around a widget; it is wider than the focus ring, so that the two differ."""
@@ -92,9 +116,16 @@ class Coach:
             progress.go(-1)
         if progress.index:
             imgui.same_line()
-        label = "Finish" if is_last else f"{icons.ICON_FA_ARROW_RIGHT}  {'Next' if step.is_done is None else 'Skip'}"
-        if quiet_button(self._context, label, "tutorial next", "", lit=step.is_done is None):
-            progress.go(1)
+        is_read = step.is_done is None or progress.went_back
+        label = "Finish" if is_last else f"{icons.ICON_FA_ARROW_RIGHT}  {'Next' if is_read else 'Skip'}"
+        if quiet_button(self._context, label, "tutorial next", "", lit=is_read):
+            self._go_on(lesson)
+        if step.solution:
+            imgui.same_line()
+            if quiet_button(
+                self._context, f"{icons.ICON_FA_WAND_MAGIC_SPARKLES}  Do it", "tutorial solve", "Do it for me"
+            ):
+                self._context.log.attempt(lambda: self._solve(step))
         if not is_last:
             imgui.same_line()
             if quiet_button(self._context, f"{icons.ICON_FA_XMARK}  End", "tutorial end", "Close the tutorial"):

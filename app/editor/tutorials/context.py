@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING
 
 from ..toolkit.context import PanelContext
 from ..toolkit.places import Rect
-from .lesson import Lesson, Moment
+from .lesson import Lesson
+from .moment import Moment
 
 if TYPE_CHECKING:
     from ...authoring.session import Session
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
+    from ..shared.window_commands import WindowCommands
     from ..toolkit.services import Services
     from ..workflows.documents import DocumentWorkflow
 
@@ -25,6 +27,8 @@ class LessonProgress:
     index: int = 0
     beginning: Moment | None = None
     """The moment in which the step began; None until it is drawn."""
+    went_back: bool = False
+    """True if the user came back to the step, which may be done already: it stays until he goes on."""
     widgets: dict[str, Rect] = field(default_factory=dict[str, Rect])
     """Where widgets were in the last whole frame, while a lesson is open."""
 
@@ -35,14 +39,14 @@ class LessonProgress:
 
     def begin(self, lesson: Lesson | None) -> None:
         """Open a lesson at its first step; None closes the open one."""
-        self.lesson, self.index, self.beginning = lesson, 0, None
+        self.lesson, self.index, self.beginning, self.went_back = lesson, 0, None, False
 
     def go(self, by: int) -> None:
         """Go to another step; beyond the last one the lesson is over."""
         assert self.lesson is not None
         index = max(self.index + by, 0)
         if index < len(self.lesson.steps):
-            self.index, self.beginning = index, None
+            self.index, self.beginning, self.went_back = index, None, by < 0
         else:
             self.begin(None)
 
@@ -54,10 +58,19 @@ class TutorialContext(PanelContext):
     session: Session
     dialogs: Dialogs
     actions: Actions
+    commands: WindowCommands
     documents: DocumentWorkflow
     progress: LessonProgress = field(default_factory=LessonProgress)
 
     @classmethod
     def compose(cls, services: Services, documents: DocumentWorkflow) -> TutorialContext:
         """Pick what the tutorials use."""
-        return cls(services.interface, services.log, services.session, services.dialogs, services.actions, documents)
+        return cls(
+            services.interface,
+            services.log,
+            services.session,
+            services.dialogs,
+            services.actions,
+            services.commands,
+            documents,
+        )

@@ -2,79 +2,60 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from ...graph import Graph, Group, Port, Unknown
+from halation import presets
+
+from ...graph import Graph, Port
+from ..shared.window_commands import PanelTitle
+from .conditions import GraphCondition
+from .moment import Moment, Question
 
 if TYPE_CHECKING:
-    from ...authoring.session import Session
-    from ...graph import Item
-
-
-@dataclass(frozen=True)
-class Moment:
-    """What a step may ask about, at its beginning and now."""
-
-    graph: Graph
-    selected: frozenset[str]
-    """The names of selected elements."""
-    viewed: Port | None
-    """What side A of the viewer shows."""
-    frame: int
-    step_count: int
-    """How many steps of the history count: undo makes them fewer."""
-    widgets: frozenset[str]
-    """The widgets that were drawn, by name."""
-
-    @classmethod
-    def read(cls, session: Session, widgets: frozenset[str]) -> Moment:
-        """The moment of the last frame."""
-        return cls(
-            session.graph,
-            frozenset(element.name for element in session.selection),
-            session.views.find_port("A"),
-            session.time.frame,
-            session.history.position,
-            widgets,
-        )
-
-    def find_type(self, id: str) -> str:
-        """The type of a node; "" if there is none of that name."""
-        item: Item | None = self.graph.nodes.get(id)
-        return "" if item is None or isinstance(item, Group | Unknown) else item.id
-
-    def has(self, type: str) -> bool:
-        """True if the graph has a node of a type."""
-        return any(self.find_type(id) == type for id in self.graph.nodes)
-
-
-Question = Callable[[Moment, Moment], bool]
-"""Whether a step is done, by the moment in which it began and the present one."""
+    from ...authoring.commands import EditCommand
 
 
 @dataclass(frozen=True)
 class Step:
     """One step: what to do, the widget that it is about, and when it is done. Without a question the user goes on.
 
-    `{node.add}` in the sentence stands for the shortcut of that action, `widget` may be a panel.
+    `{node.add}` in the sentence stands for the shortcut of that action, `widget` may be a panel. As the step begins,
+    the viewer goes to the port `show`, and `panel` comes to the front. The commands of `solution` do what is asked for.
     """
 
     sentence: str
     widget: str
     is_done: Question | None = None
+    show: str = ""
+    panel: PanelTitle | None = None
+    solution: tuple[EditCommand[Any], ...] = ()
 
 
 @dataclass(frozen=True)
 class Lesson:
-    """A lesson with its steps. It begins with a preset, or with the sample render."""
+    """A lesson with its steps. It starts with a graph, by its path below the presets, or with a picture."""
 
     id: str
     title: str
     doc: str
-    start: Literal["soft_bloom", "sample"]
+    start: str
     steps: tuple[Step, ...]
+
+    @property
+    def start_file(self) -> Path:
+        """The graph or the picture that the lesson starts with."""
+        return presets.sample() if self.start == "sample" else presets.sample().parents[1] / f"{self.start}.json"
+
+    @property
+    def tasks(self) -> tuple[Step, ...]:
+        """The steps that ask for something that can be read off the graph."""
+        return tuple(step for step in self.steps if isinstance(step.is_done, GraphCondition))
+
+    def is_solved(self, graph: Graph) -> bool:
+        """True if all that the tasks ask for is true of a graph."""
+        return all(task.is_done.holds(graph) for task in self.tasks if isinstance(task.is_done, GraphCondition))
 
 
 def selects(id: str) -> Question:

@@ -3,19 +3,8 @@
 from __future__ import annotations
 
 from ...graph import Keys, Port
-from .lesson import (
-    Lesson,
-    Moment,
-    Question,
-    Step,
-    adds,
-    changes,
-    draws,
-    links,
-    selects,
-    shows,
-    undoes,
-)
+from .lesson import Lesson, Step, adds, changes, draws, links, selects, shows, undoes
+from .moment import Moment, Question
 
 _GLOW = Port("bloom", "intensity")
 

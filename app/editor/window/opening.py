@@ -16,10 +16,14 @@ from .opengl import best_version
 from .window import Window
 
 
-def open_window(path: Path | None, bindings: Mapping[str, str], sandbox: Sandbox) -> None:
-    """Run the editor. Raises DeviceError where no window can be opened, KeyboardInterrupt if it was interrupted."""
+def open_window(path: Path | None, bindings: Mapping[str, str], sandbox: Sandbox, lesson: str = "") -> None:
+    """Run the editor, on a lesson if its id is given.
+
+    Raises DeviceError where no window can be opened, KeyboardInterrupt if it was interrupted.
+    """
     state = state_folder()
-    window = Window(path, bindings, sandbox, version=best_version(), state=state)
+    action = f"lesson.{lesson}" if lesson else ""
+    window = Window(path, bindings, sandbox, first_action=action, version=best_version(), state=state)
     keep_layout(window.params, state)
     is_visible = os.environ.get("HALATION_WINDOW") != "none"
     window.params.imgui_window_params.enable_viewports = is_visible and PreferenceStore(state).current.separate_windows

@@ -58,13 +58,14 @@ class Window:
         bindings: Mapping[str, str],
         sandbox: Sandbox,
         *,
+        first_action: str = "",
         version: tuple[int, int] = (4, 5),
         state: Path | None = None,
         size: tuple[int, int] = SIZE,
         form: Form | None = None,
     ) -> None:
         self._path, self._bindings, self._sandbox, self._state = path, dict(bindings), sandbox, state
-        self._form: Form | None = form
+        self._form, self._first_action = form, first_action
         self.editor: Editor
         self._contexts: Contexts
         self._panels: dict[str, Panel] = {}
@@ -163,6 +164,8 @@ class Window:
         self._panels = {docked.title: docked.make(self._contexts) for docked in DOCKED}
         self._panels["Timeline"] = Timeline(self._contexts.timeline)
         self._overlays = {name: make(self._contexts) for name, make in OVERLAYS}
+        if self._first_action:
+            self.editor.actions.run(self._first_action)
         imgui.get_io().config_flags |= int(imgui.ConfigFlags_.nav_enable_keyboard)
         imgui.get_io().config_drag_click_to_input_text = True
         self._input.connect(_host())
