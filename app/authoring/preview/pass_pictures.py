@@ -53,6 +53,8 @@ class PassPictures:
         self.revision = 0
         """Grows with every change of the pictures."""
         self.fault = ""
+        self.marked = ""
+        """The shader function whose passes the panel marks; "" for none."""
         self.is_shown = False
         """True if somebody has looked at the passes since the last frame."""
 

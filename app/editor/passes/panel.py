@@ -9,6 +9,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...authoring.edits.element_id import ElementId
 from ..theme.style import u32, ui_scale, vec4
+from ..toolkit.buttons import outline
 from ..toolkit.places import record
 from ..toolkit.textures import Textures, fit_picture
 from ..toolkit.words import SMALL, draw_empty_panel, draw_wrapped, font, tip
@@ -28,6 +29,7 @@ class PassesPanel:
         self._context = context
         self._textures = Textures()
         self._revision = 0
+        self._scrolled_to = ("", 0)
 
     def close(self) -> None:
         """Release textures."""
@@ -64,6 +66,9 @@ class PassesPanel:
         low, high, lines = imgui.get_item_rect_min(), imgui.get_item_rect_max(), imgui.get_window_draw_list()
         color = palette.hover if imgui.is_item_hovered() else palette.raised
         lines.add_rect_filled(low, high, u32(color), imgui.get_style().frame_rounding)
+        if self._context.pictures.marked in entry.functions:
+            outline(palette.accent)
+            self._scroll_once()
         after = imgui.get_cursor_pos()
         if imgui.is_item_visible():
             codes = entry.picture.codes
@@ -75,6 +80,13 @@ class PassesPanel:
             self._draw_words(index, entry, width - box - 3 * pad, size.y - 2 * pad)
         imgui.set_cursor_pos(after)
         imgui.dummy(ImVec2(0, 0))
+
+    def _scroll_once(self) -> None:
+        """Bring the first marked pass into view: again only when others are marked, or other passes have run."""
+        target = self._context.pictures.marked, self._revision
+        if target != self._scrolled_to:
+            self._scrolled_to = target
+            imgui.set_scroll_here_y(0.5)
 
     def _draw_words(self, index: int, entry: PassPicture, width: float, height: float) -> None:
         palette = self._context.palette

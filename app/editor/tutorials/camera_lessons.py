@@ -35,6 +35,7 @@ MOTION_BLUR = Lesson(
             " passes find the fastest motion in each tile of 22 x 22 pixels, and one looks at the tiles around it.",
             "Passes",
             panel=PanelTitle.PASSES,
+            marks="motion_blur_fastest",
         ),
         Step(
             "The last pass looks along the pixel's own path, and along that of the fastest neighbor. But which of the"
@@ -48,6 +49,7 @@ MOTION_BLUR = Lesson(
             "al. 2014). Two passes more repair the edges of the picture, where a pixel holds two surfaces.",
             "Passes",
             panel=PanelTitle.PASSES,
+            marks="motion_blur",
         ),
     ),
 )
@@ -130,6 +132,7 @@ DEPTH_OF_FIELD = Lesson(
             "from behind must not. So there are passes for near and for far, at half the size.",
             "Passes",
             panel=PanelTitle.PASSES,
+            marks="depth_of_field_near",
         ),
     ),
 )

@@ -67,6 +67,7 @@ class Coach:
         session, port = self._context.session, Port.parse(step.show) if step.show else None
         if port is not None and is_viewable(session.graph, port):
             session.views.show(port)
+        self._context.passes.marked = step.marks
         if step.panel is not None:
             self._context.commands.show_panel(step.panel)
 

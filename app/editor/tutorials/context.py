@@ -11,6 +11,7 @@ from .lesson import Lesson
 from .moment import Moment
 
 if TYPE_CHECKING:
+    from ...authoring.preview.pass_pictures import PassPictures
     from ...authoring.session import Session
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
@@ -59,6 +60,7 @@ class TutorialContext(PanelContext):
     dialogs: Dialogs
     actions: Actions
     commands: WindowCommands
+    passes: PassPictures
     documents: DocumentWorkflow
     progress: LessonProgress = field(default_factory=LessonProgress)
 
@@ -72,5 +74,6 @@ class TutorialContext(PanelContext):
             services.dialogs,
             services.actions,
             services.commands,
+            services.passes,
             documents,
         )

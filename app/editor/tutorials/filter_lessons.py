@@ -131,6 +131,7 @@ SEPARABLE_BLUR = Lesson(
             "two passes read 2 n pixels instead of n².",
             "Passes",
             panel=PanelTitle.PASSES,
+            marks="convolve y",
         ),
         Step(
             "Here sigma is 6 pixels, and the weights reach 24 pixels to each side: 98 reads instead of 2401. With "
@@ -172,6 +173,7 @@ BLOOM_PYRAMID = Lesson(
             "Passes",
             show="pyramid.glow",
             panel=PanelTitle.PASSES,
+            marks="bloom_shrink",
         ),
         Step(
             "1/4 + 1/16 + 1/64 and so on is 1/3: all smaller levels together have a third of the pixels of the "

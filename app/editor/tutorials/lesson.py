@@ -22,7 +22,8 @@ class Step:
     """One step: what to do, the widget that it is about, and when it is done. Without a question the user goes on.
 
     `{node.add}` in the sentence stands for the shortcut of that action, `widget` may be a panel. As the step begins,
-    the viewer goes to the port `show`, and `panel` comes to the front. The commands of `solution` do what is asked for.
+    the viewer goes to the port `show`, `panel` comes to the front, and the passes of the shader function `marks` are
+    marked there. The commands of `solution` do what is asked for.
     """
 
     sentence: str
@@ -30,6 +31,7 @@ class Step:
     is_done: Question | None = None
     show: str = ""
     panel: PanelTitle | None = None
+    marks: str = ""
     solution: tuple[EditCommand[Any], ...] = ()
 
 

@@ -67,6 +67,7 @@ ADAPTATION = Lesson(
             "Passes",
             show="outputs.image",
             panel=PanelTitle.PASSES,
+            marks="reduce",
         ),
         Step(
             "The node eye brings that number to middle gray, 0.18. But the mean is 0.98, because of lamps of up to "
@@ -127,6 +128,7 @@ DEFERRED_LIGHT = Lesson(
             "are farther away leave them out: so a hundred lamps are cheap. Look at the times.",
             "Passes",
             panel=PanelTitle.PASSES,
+            marks="deferred_lighting_lit",
         ),
     ),
 )
@@ -149,6 +151,7 @@ AMBIENT_OCCLUSION = Lesson(
             "Look at the times: nearly all of it is spent in the pass that looks around, ambient_occlusion_horizons.",
             "Passes",
             panel=PanelTitle.PASSES,
+            marks="ambient_occlusion_horizons",
         ),
         Step(
             "Your turn. Occlusion is soft, so a quarter of the pixels will do. Click occlusion and set resolution to "
@@ -162,6 +165,7 @@ AMBIENT_OCCLUSION = Lesson(
             "of the same surface: a plain enlargement would smear the dark of a sphere onto the wall behind.",
             "Passes",
             panel=PanelTitle.PASSES,
+            marks="ambient_occlusion_enlarge",
         ),
         Step(
             "Where the sky is hidden it is not black: something hides it, and that has light and color of its own. "

@@ -15,6 +15,7 @@ from ..command_palette.context import PaletteContext
 from ..curves.actions import ANIMATION
 from ..curves.context import CurvesContext
 from ..dialogs.context import DialogContext
+from ..exporting.context import ExportContext
 from ..history.context import HistoryContext
 from ..inspector.context import InspectorContext
 from ..library.context import PresetContext
@@ -50,6 +51,7 @@ class Contexts:
     command_palette: PaletteContext
     curves: CurvesContext
     dialogs: DialogContext
+    exporting: ExportContext
     history: HistoryContext
     inspector: InspectorContext
     log: LogContext
@@ -79,6 +81,7 @@ def compose_contexts(editor: Editor) -> Contexts:
         PaletteContext.compose(editor, editor.canvas, documents),
         CurvesContext.compose(editor, editor.curves),
         DialogContext.compose(editor),
+        ExportContext.compose(editor),
         HistoryContext.compose(editor),
         InspectorContext.compose(editor, editor.canvas, editor.viewer, editor.timeline),
         LogContext.compose(editor),

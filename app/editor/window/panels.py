@@ -16,6 +16,7 @@ from ..dialogs.cheat_sheet import CheatSheet
 from ..dialogs.node_page import NodePage
 from ..dialogs.panel_page import PanelPage
 from ..dialogs.question import QuestionDialog
+from ..exporting.dialog import ExportDialog
 from ..history.panel import HistoryPanel
 from ..inspector.inspector import Inspector
 from ..library.dialog import PresetDialog
@@ -70,6 +71,7 @@ OVERLAYS: tuple[tuple[str, Callable[[Contexts], Panel]], ...] = (
     ("Node", lambda contexts: NodePage(contexts.dialogs)),
     ("Panel", lambda contexts: PanelPage(contexts.dialogs)),
     ("Preferences", lambda contexts: PreferencesDialog(contexts.preferences)),
+    ("Export", lambda contexts: ExportDialog(contexts.exporting)),
     ("Save as preset", lambda contexts: PresetDialog(contexts.presets)),
     ("Command palette", lambda contexts: CommandPalette(contexts.command_palette)),
     ("Files", lambda contexts: FileBrowser(contexts.browser)),

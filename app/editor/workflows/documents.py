@@ -316,5 +316,13 @@ DOCUMENTS: tuple[Action[DocumentWorkflow], ...] = (
         "F12",
         separated=True,
     ),
+    Action(
+        "file.export",
+        "Export...",
+        lambda files: files.dialogs.open.add("export"),
+        "File",
+        doc="Write the graph for programs that know nothing of Halation: a web page, passes of GLSL, an ISF shader, or "
+        "a table of colors.",
+    ),
     Action("file.quit", "Quit", DocumentWorkflow.quit, "File", "Ctrl+Q", separated=True),
 )

@@ -1,0 +1,1 @@
+"""The dialog that exports the document to the formats of other programs."""

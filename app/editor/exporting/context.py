@@ -1,0 +1,26 @@
+"""What the export dialog uses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..toolkit.context import PanelContext
+
+if TYPE_CHECKING:
+    from ...authoring.session import Session
+    from ..shared.dialogs import Dialogs
+    from ..toolkit.services import Services
+
+
+@dataclass(frozen=True)
+class ExportContext(PanelContext):
+    """The collaborators of the dialog."""
+
+    session: Session
+    dialogs: Dialogs
+
+    @classmethod
+    def compose(cls, services: Services) -> ExportContext:
+        """Pick what the dialog uses."""
+        return cls(services.interface, services.log, services.session, services.dialogs)
