@@ -1,4 +1,4 @@
-"""The tables of docs/command-line.md, from what the commands declare."""
+"""The tables of docs/command-line.md and docs/fit.md, from what the commands declare."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ _EVERYWHERE = ("--json", "--root", "--timeout")
 """Flags of nearly all commands, which the text of the page explains."""
 _SHARED_BY = 3
 """Options of so many commands have a table of their own, and the commands only name them."""
+_SHARED = "command-line.md#shared-options"
 _BLOCK = re.compile(r"<!-- (?P<name>[\w-]+) -->\n.*?<!-- /(?P=name) -->", re.DOTALL)
 
 
@@ -33,7 +34,8 @@ def fill_tables(page: str) -> str:
         name = match["name"]
         if name == "shared":
             return f"<!-- shared -->{_table(list(shared.items()))}<!-- /shared -->"
-        return describe_command(name, commands[name], shared)
+        text = describe_command(name, commands[name], shared)
+        return text if "<!-- shared -->" in page else text.replace("(#shared-options)", f"({_SHARED})")
 
     return _BLOCK.sub(fill, page)
 

@@ -32,6 +32,12 @@ _LITTLE_DISK = 1 << 30
 
 _LITTLE_MEMORY = 2 << 30
 """Bytes. The largest presets need about 1 GB in 4K, and pictures are decoded and encoded beside them."""
+_EXTRAS = (
+    ("video", "av", "videos cannot be read or written"),
+    ("denoise", "pyoidn", "the node denoise cannot work"),
+    ("fit", "cma", "halation fit cannot work"),
+)
+"""Extras, a distribution of each, and what is lacking without it."""
 
 
 class MachineCheck(Struct, frozen=True):
@@ -90,14 +96,11 @@ def _examine_packages() -> Iterator[MachineCheck]:
         except metadata.PackageNotFoundError:
             yield MachineCheck("packages", "fault", f"{name} is missing: run pip install --upgrade halation")
     yield MachineCheck("packages", "ok", ", ".join(versions))
-    try:
-        yield MachineCheck("video", "ok", f"av {metadata.version('av')}")
-    except metadata.PackageNotFoundError:
-        yield MachineCheck("video", "note", "videos cannot be read or written: run pip install 'halation[video]'")
-    try:
-        yield MachineCheck("denoise", "ok", f"pyoidn {metadata.version('pyoidn')}")
-    except metadata.PackageNotFoundError:
-        yield MachineCheck("denoise", "note", "the node denoise cannot work: run pip install 'halation[denoise]'")
+    for name, distribution, lack in _EXTRAS:
+        try:
+            yield MachineCheck(name, "ok", f"{distribution} {metadata.version(distribution)}")
+        except metadata.PackageNotFoundError:
+            yield MachineCheck(name, "note", f"{lack}: run pip install 'halation[{name}]'")
 
 
 def _examine_opengl() -> MachineCheck:

@@ -236,6 +236,22 @@ def resolve_inputs(graph: Graph, inputs: Mapping[str, str]) -> dict[str, str]:
     return files
 
 
+def choose_output(graph: Graph, show: str, node: str) -> str:
+    """The output that --show or --node names, else the first of the graph. Raises UsageError."""
+    from ..errors import UsageError
+    from ..graph import did_you_mean
+
+    if node:
+        if show:
+            raise UsageError("--show and --node: choose one")
+        return node
+    if not graph.outputs:
+        raise UsageError("the graph has no output to show: choose a node with --node")
+    if show and show not in graph.outputs:
+        raise UsageError(f"--show {show}: there is no output '{show}'{did_you_mean(show, graph.outputs)}")
+    return show or next(iter(graph.outputs))
+
+
 def report_problems(path: Path, graph: Graph) -> None:
     """Print the warnings of a graph. Raises GraphError that names the first error and counts the others."""
     from ..errors import GraphError

@@ -41,6 +41,7 @@ _VISIBLE = (
     "reproduce",
     "watch",
     "sweep",
+    "fit",
     "bench",
     "export",
     "doctor",

@@ -21,6 +21,7 @@ from .options import (
     Scale,
     SizeText,
     View,
+    choose_output,
     open_graph,
     report_problems,
     resolve_inputs,
@@ -30,7 +31,6 @@ from .sweeping import parse_axes
 from .watchdog import Timeout, rerun_watched
 
 if TYPE_CHECKING:
-    from ..graph import Graph
     from ..renderer.jobs.sweep import SweepSheet
 
 
@@ -108,7 +108,7 @@ def sweep(
     frame_of_all = (
         named_frames[0] if named_frames else LazyResourceProvider(sandbox).find_frames(opened_graph, bindings)[0]
     )
-    shown_output = _choose_output(opened_graph, show, node)
+    shown_output = choose_output(opened_graph, show, node)
     shown_view = view or ("" if node else opened_graph.outputs[shown_output].view)
     count = len(sweeping.list_cells(opened_graph, sweep_axes, frame_of_all))
     _check_sheet(output, shown_view, sandbox)
@@ -131,22 +131,6 @@ def sweep(
         height, width = sheet.light.shape[:2]
         print_note(f"{output}  {count} pictures, {width}x{height}, {seconds:.2f} s")
     return 0
-
-
-def _choose_output(graph: Graph, show: str, node: str) -> str:
-    """The output to show. Raises UsageError."""
-    from ..errors import UsageError
-    from ..graph import did_you_mean
-
-    if node:
-        if show:
-            raise UsageError("--show and --node: choose one")
-        return node
-    if not graph.outputs:
-        raise UsageError("the graph has no output to show: choose a node with --node")
-    if show and show not in graph.outputs:
-        raise UsageError(f"--show {show}: there is no output '{show}'{did_you_mean(show, graph.outputs)}")
-    return show or next(iter(graph.outputs))
 
 
 def _check_sheet(output: Path, view: str, sandbox: Sandbox) -> None:

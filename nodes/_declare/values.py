@@ -113,13 +113,15 @@ class Dial(Struct, frozen=True):
 class Curve(Struct, frozen=True):
     """The value is a smooth curve through points `x0, y0, x1, y1, ...` with increasing x in 0..1: see `curve_at`.
 
-    `low` and `high` are the range of y in the editor, `minimum` and `maximum` its hard range.
+    `low` and `high` are the range of y in the editor, `minimum` and `maximum` its hard range. The first and the last
+    point of a `cyclic` curve are the same place, such as red at both ends of the hues.
     """
 
     low: float = 0.0
     high: float = 1.0
     minimum: float = float("-inf")
     maximum: float = float("inf")
+    cyclic: bool = False
 
 
 class Spline(Struct, frozen=True):
@@ -257,6 +259,8 @@ class Value(Struct, frozen=True):
     """True if it belongs to the mask that many nodes have: interfaces show it only where it is used."""
     has_lines: bool = False
     """True for a text of several lines."""
+    cyclic: bool = False
+    """True for a curve whose first and last point are the same place."""
     items: Items | None = None
     """What named items it can hold."""
 
@@ -324,7 +328,7 @@ def read_value(name: str, hint: Any, default: Any) -> Value:
         elif isinstance(note, Dial):
             facts["turns"] = note.turns
         elif isinstance(note, Curve):
-            facts |= {key: getattr(note, key) for key in ("low", "high", "minimum", "maximum")}
+            facts |= {key: getattr(note, key) for key in ("low", "high", "minimum", "maximum", "cyclic")}
         elif isinstance(note, Items):
             facts["items"] = note
     return Value(**facts)

@@ -22,13 +22,15 @@ class HueCurves(Pointwise):
 
     image = Image()
     hue_by_hue: Annotated[
-        Points, Curve(-0.25, 0.25, minimum=-1.0, maximum=1.0), Doc("How far each hue turns, in full turns.")
+        Points,
+        Curve(-0.25, 0.25, minimum=-1.0, maximum=1.0, cyclic=True),
+        Doc("How far each hue turns, in full turns."),
     ] = _TURN
     saturation_by_hue: Annotated[
-        Points, Curve(0.0, 2.0, minimum=0.0, maximum=16.0), Doc("Factor on the saturation of each hue.")
+        Points, Curve(0.0, 2.0, minimum=0.0, maximum=16.0, cyclic=True), Doc("Factor on the saturation of each hue.")
     ] = _FACTOR
     light_by_hue: Annotated[
-        Points, Curve(0.0, 2.0, minimum=0.0, maximum=16.0), Doc("Factor on the light of each hue.")
+        Points, Curve(0.0, 2.0, minimum=0.0, maximum=16.0, cyclic=True), Doc("Factor on the light of each hue.")
     ] = _FACTOR
     saturation_by_saturation: Annotated[
         Points,

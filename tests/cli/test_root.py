@@ -209,6 +209,7 @@ OUTSIDE: dict[str, tuple[object, ...]] = {
     "reproduce": ("{out}/shot.exr",),
     "watch": ("{out}/group.json", "-o", "{fence}/a.png"),
     "sweep": ("{out}/group.json", "-o", "{fence}/a.png", "--set", "n.size=1,2"),
+    "fit": ("{out}/group.json", "--to", "{out}/shot.exr", "--values", "n.*", "-o", "{fence}/fitted.json"),
     "bench": ("{out}/group.json",),
     "export": ("{out}/group.json", "--to", "isf"),
     "export-isf": ("{out}/group.json",),

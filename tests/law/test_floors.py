@@ -19,7 +19,7 @@ DATA = ("nodes", "shaders", "presets")
 FLOORS = (
     "errors", "version", "glsl", "resources", "custom_nodes", "graph", "document", "compiler", "color", "media",
     "render_layers", "inputs", "lint", "renderer", "scripting", "__init__", "serving", "cluster", "watch", "regression",
-    "export", "desktop", "authoring", "editor", "cli",
+    "export", "fit", "desktop", "authoring", "editor", "cli",
 )  # fmt: skip
 """Parts of the machine from the ground up. `__init__` is the public face of the engine: it stands on the renderer."""
 
@@ -40,6 +40,8 @@ HOMES = {
     "bidi": "media",
     "distributed": "cluster",
     "pyoidn": "media",
+    "cma": "fit",
+    "scipy": "fit",
     "glfw": "editor",
     "imgui_bundle": "editor",
     "typer": "cli",
@@ -169,7 +171,7 @@ def test_no_module_is_part_of_a_cycle() -> None:
 def test_every_library_is_declared() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     extras = project["optional-dependencies"]
-    listed = [*project["dependencies"], *extras["video"], *extras["denoise"], *extras["cluster"]]
+    listed = [*project["dependencies"], *extras["video"], *extras["denoise"], *extras["cluster"], *extras["fit"]]
     declared = {re.split(r"[^\w-]", line)[0].lower() for line in listed}
     providers = packages_distributions()
     ours = {"halation"}
@@ -196,7 +198,7 @@ def test_importing_stays_light(module: str, absent: tuple[str, ...]) -> None:
     assert result.stdout.strip() == ""
 
 
-@pytest.mark.parametrize("command", ["bench", "gallery", "render", "reproduce", "sweep", "test", "watch"])
+@pytest.mark.parametrize("command", ["bench", "fit", "gallery", "render", "reproduce", "sweep", "test", "watch"])
 def test_commands_without_windows_know_no_editor(command: str) -> None:
     """Neither their modules nor anything that these import, inside of functions too."""
     reached, waiting = set[str](), [f"halation.cli.{command}"]

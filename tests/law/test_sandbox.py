@@ -82,6 +82,7 @@ OPENERS = {
     "regression/suites.py": "a method of tables of TOML has such a name",
     "regression/toml_tables.py": "the same",
     "regression/report.py": "the template of the page",
+    "fit/report.py": "the template of the page",
     "renderer/execution/progress_beacon.py": "the heartbeat",
     "renderer/opengl/cache_archive.py": "files of the driver's cache",
     "renderer/opengl/shader_cache.py": "hashes of programs, in the cache of the driver, which writes there too",

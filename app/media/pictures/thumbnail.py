@@ -44,8 +44,13 @@ def shrink_to_fit(pixels: Array, width: int, height: int) -> Array:
     if scale == 1.0:
         return small
     across, down = (max(1, round(side * scale)) for side in (small.shape[1], small.shape[0]))
-    roi = oiio.ROI(0, across, 0, down)
-    resized = oiio.ImageBufAlgo.resize(oiio.ImageBuf(small), filtername="box", roi=roi)
+    return resize_by_area(small, across, down)
+
+
+def resize_by_area(pixels: Array, width: int, height: int) -> Array:
+    """Pixels in exactly this size, as float32: each is the mean of those that it stands for."""
+    source = oiio.ImageBuf(np.ascontiguousarray(pixels, dtype=np.float32))
+    resized = oiio.ImageBufAlgo.resize(source, filtername="box", roi=oiio.ROI(0, width, 0, height))
     return np.asarray(resized.get_pixels(oiio.FLOAT), np.float32)
 
 
