@@ -82,7 +82,7 @@ def measure_curvatures(slopes: Array) -> Array:
     Its square is the curvature of the squared error along the number where all others follow: one over the diagonal of
     the inverse of the Gauss-Newton matrix.
     """
-    triangle = np.linalg.qr(slopes, mode="r")
+    triangle = np.asarray(np.linalg.qr(slopes, mode="r"))
     lengths = np.zeros(slopes.shape[1])
     for place, column in enumerate(triangle.T):
         others = np.delete(triangle, place, axis=1)

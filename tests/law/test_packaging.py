@@ -23,6 +23,7 @@ SHIPPED = {
     "app": (
         "**/*.py",
         "py.typed",
+        "fit/report.html",
         "regression/report.html",
         "desktop/icons/*",
         "editor/assets/**/*.png",

@@ -65,11 +65,11 @@ class Window:
         form: Form | None = None,
     ) -> None:
         self._path, self._bindings, self._sandbox, self._state = path, dict(bindings), sandbox, state
-        self._form, self._first_action = form, first_action
+        self._form: Form | None = form
         self.editor: Editor
         self._contexts: Contexts
         self._panels: dict[str, Panel] = {}
-        self._overlays: dict[str, Panel] = {}
+        self._overlays, self._first_action = dict[str, Panel](), first_action
         self._updater: FrameUpdater
         self._waker: FrameWaker
         self._worked_at = 0.0
