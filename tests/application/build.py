@@ -25,6 +25,7 @@ from typing import IO, NamedTuple, cast
 from urllib.parse import quote
 
 HERE = Path(__file__).parent
+ROOT = HERE.parents[1]
 _WHOLE_PACKAGES = ("imgui_bundle", "OpenImageIO", "PyOpenColorIO", "pyoidn", "dask", "distributed", "trimesh")
 """Packages whose data or lazily imported modules PyInstaller does not find by itself."""
 
@@ -42,11 +43,7 @@ _LIBRARY_FOLDERS = ("/lib/x86_64-linux-gnu", "/usr/lib/x86_64-linux-gnu")
 
 def build_folder(python: Path, folder: Path, commit_time: int) -> Path:
     """Make the application in `folder` from an environment that has Halation and PyInstaller; returns its folder."""
-    options = ["--noconfirm", "--log-level", "ERROR", "--name", "halation", "--contents-directory", "lib"]
-    options += ["--distpath", str(folder), "--workpath", str(folder / "work"), "--specpath", str(folder / "work")]
-    options += ["--additional-hooks-dir", str(HERE / "hooks")]
-    options += [word for package in _WHOLE_PACKAGES for word in ("--collect-all", package)]
-    options += [word for package in _NOT_USED for word in ("--exclude-module", package)]
+    options = list_options(folder)
     environment = {**os.environ, "PYTHONHASHSEED": "1", "SOURCE_DATE_EPOCH": str(commit_time)}
     environment.pop("PYTHONPATH", None)
     command = [python, "-m", "PyInstaller", *options, HERE / "program.py"]
@@ -58,6 +55,16 @@ def build_folder(python: Path, folder: Path, commit_time: int) -> Path:
     remove_libraries(application / "lib")
     link_copies(application)
     return application
+
+
+def list_options(folder: Path) -> list[str]:
+    """The options of PyInstaller for an application in `folder`, on each system."""
+    options = ["--noconfirm", "--log-level", "ERROR", "--name", "halation", "--contents-directory", "lib"]
+    options += ["--distpath", str(folder), "--workpath", str(folder / "work"), "--specpath", str(folder / "work")]
+    options += ["--additional-hooks-dir", str(HERE / "hooks")]
+    options += [word for package in _WHOLE_PACKAGES for word in ("--collect-all", package)]
+    options += [word for package in _NOT_USED for word in ("--exclude-module", package)]
+    return options
 
 
 def compile_modules(python: Path, libraries: Path, environment: Mapping[str, str]) -> None:

@@ -23,4 +23,6 @@ if sys.argv[1:3] == ["-P", "-m"]:
 else:
     from halation.cli import main
 
+    if sys.argv[1:] == [] and ".app/Contents/MacOS/" in sys.executable and not sys.stdout.isatty():
+        sys.argv.append("edit")  # macOS opens a bundle without words, and shows no text
     main()

@@ -18,6 +18,7 @@ ENTRIES = {
     ".ci",
     ".git",
     ".git-blame-ignore-revs",
+    ".github",
     ".gitignore",
     "LICENSE",
     "README.md",
