@@ -1,0 +1,69 @@
+"""Halation works with the lowest versions of its packages that pyproject.toml allows."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from source_trees import copy_tree
+
+UV = Path(sys.executable).with_name("uv")
+EXTRAS = ("video", "denoise", "cluster")
+TOOLS = ("pytest", "pytest-timeout", "pytest-xdist", "hypothesis", "scipy", "opencv-python-headless", "jsonschema")
+TOOLS += ("markdown-it-py", "freetype-py")
+PARTS = (
+    "tests/color/test_views.py",
+    "tests/document",
+    "tests/cli/test_completion.py",
+    "tests/editor/panels/test_offers.py",
+    "tests/gui/test_keymaps.py",
+    "tests/media/test_video.py",
+    "tests/nodes/test_text.py",
+)
+"""Tests that each of the packages with an interface of its own takes part in."""
+
+pytestmark = [
+    pytest.mark.nightly,
+    pytest.mark.timeout(1800),
+    pytest.mark.skipif(not UV.exists(), reason="uv is not installed"),
+]
+
+
+def run(*words: str | Path, folder: Path) -> str:
+    """What a program prints; the test fails with all of it if the program does."""
+    environment = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "VIRTUAL_ENV"))}
+    ended = subprocess.run(words, cwd=folder, env=environment, capture_output=True, text=True)
+    assert ended.returncode == 0, f"{words}\n{ended.stdout[-6000:]}\n{ended.stderr[-6000:]}"
+    return ended.stdout
+
+
+@pytest.fixture(scope="module")
+def python(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The Python of an environment with the lowest versions, in which a copy of the tree is installed for editing."""
+    folder = tmp_path_factory.mktemp("lowest")
+    tree = copy_tree(folder / "tree")
+    extras = [word for extra in EXTRAS for word in ("--extra", extra)]
+    lowest = ("--resolution", "lowest-direct", "--python", sys.executable, "--quiet", "-o", folder / "lowest.txt")
+    run(UV, "pip", "compile", *lowest, *extras, "pyproject.toml", folder=tree)
+    run(UV, "venv", "--quiet", "--python", sys.executable, folder / "venv", folder=tree)
+    python = folder / "venv/bin/python"
+    pip = (UV, "pip", "install", "--quiet", "--python", python)
+    run(*pip, "-r", folder / "lowest.txt", folder=tree)
+    run(*pip, "--constraint", folder / "lowest.txt", *TOOLS, folder=tree)
+    run(*pip, "--no-deps", "--editable", ".", folder=tree)
+    return python
+
+
+def test_a_picture_is_rendered(python: Path, tmp_path: Path) -> None:
+    run(python, "-m", "halation.cli", "doctor", folder=tmp_path)
+    run(python, "-m", "halation.cli", "render", "soft_bloom", "-o", "out.png", folder=tmp_path)
+    assert (tmp_path / "out.png").stat().st_size > 10_000
+
+
+def test_a_part_of_the_suite_passes(python: Path) -> None:
+    tree = python.parents[2] / "tree"
+    printed = run(python, "-m", "pytest", "-q", "-p", "no:xdist", "-p", "no:cacheprovider", *PARTS, folder=tree)
+    assert " passed" in printed and " failed" not in printed
