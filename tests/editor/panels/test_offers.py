@@ -53,6 +53,7 @@ def desk(tmp_path: Path) -> Editor:
         watcher=watcher,
         renders=none,
         coloring=none,
+        passes=none,
         log=log,
     )
 
