@@ -77,3 +77,11 @@ def test_the_first_page_is_small(site: Path) -> None:
     files = {name.split("?")[0] for name in re.findall(r'(?:src|href)="([^":#]+\.(?:js|css|png|jpg))"', text)}
     assert len(files) >= 4
     assert len(text) + sum((site / name).stat().st_size for name in files) <= FIRST_PAGE_LIMIT
+
+
+def test_pages_have_no_attributes_that_html_does_not_allow(site: Path) -> None:
+    """Those that the validator of the W3C has found."""
+    for name in ("404.html", "index.html", "nodes/bloom.html"):
+        page = (site / name).read_text(encoding="utf-8")
+        assert "<label" in page and 'tabindex=""' not in page and "autocorrect=" not in page, name
+        assert not re.search(r'<input[^>]*type="checkbox"[^>]*autocomplete|<img[^>]*width="[^"]*%', page), name

@@ -80,7 +80,19 @@ def write_bars(markdown: str) -> str:
 def on_post_page(output: str, page: Any, **_: Any) -> str:
     """Replace the one script that Material loads from elsewhere by ours, so that the site needs no network."""
     own = "../" * page.url.count("/") + "assets/file_search.js"
-    return output.replace("https://unpkg.com/iframe-worker/shim", own)
+    return remove_invalid_attributes(output.replace("https://unpkg.com/iframe-worker/shim", own))
+
+
+def on_post_template(output_content: str, template_name: str, **_: Any) -> str:
+    """The page of dead links is made from a template of Material alone."""
+    return remove_invalid_attributes(output_content) if template_name.endswith(".html") else output_content
+
+
+def remove_invalid_attributes(html: str) -> str:
+    """A page without the attributes of Material that HTML does not allow where they stand, and that browsers ignore."""
+    html = re.sub(r'(<input[^>]*) autocorrect="off"', r"\1", html)
+    html = re.sub(r'(<input[^>]* type="(?:checkbox|radio)"[^>]*) autocomplete="off"', r"\1", html)
+    return re.sub(r'(<label[^>]*) tabindex=""', r"\1", html)
 
 
 def indent_lists(markdown: str) -> str:

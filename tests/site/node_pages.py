@@ -29,8 +29,8 @@ def write_node_page(node: type[Node], presets: Iterable[str], pictures: Collecti
     blocks = [f"# {node.title}", f"`{node.id}` in the menu {node.category}", summary]
     picture = _name_picture(node)
     if picture in pictures:
-        before = f"![The sample before](../{BEFORE}){{ width=48% }} "
-        after = f"![{node.title} at its defaults](../{picture}){{ width=48% }}"
+        before = f"![The sample before](../{BEFORE}){{ .half }} "
+        after = f"![{node.title} at its defaults](../{picture}){{ .half }}"
         blocks.append(before + after if "image" in node.inputs else after)
     blocks += rest
     blocks += ["## What it costs", _describe_cost(node)]
