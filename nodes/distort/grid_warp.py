@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Resampling
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Resampling, Trait
 
 _COUNT = 4
 """The points of the grid across, and down."""
@@ -26,6 +26,7 @@ class GridWarp(Filter):
         "mesh warp", "grid distort", "griddistort", "bezier warp", "warp", "puppet", "liquify", "lattice", "cage",
         "free form deformation", "bend", "bicubic warp", "smear",
     )  # fmt: skip
+    traits = (Trait.WARPS,)
 
     image = Image()
     out = OutputSocket(follows="image")

@@ -13,6 +13,7 @@ from .._declare import (
     OutputSocket,
     Size,
     Slider,
+    Trait,
     Vector,
     curve_pairs_of,
     name_curve_pairs,
@@ -37,6 +38,7 @@ class SplineWarp(Filter):
         "morph", "morphing", "field morphing", "reshape", "warp", "spline morph", "feature warp", "face morph",
         "beier neely", "metamorphosis", "line warp",
     )  # fmt: skip
+    traits = (Trait.WARPS,)
 
     image = Image()
     other = Image(0.0, doc="The second picture. Without one, show the first picture alone.")

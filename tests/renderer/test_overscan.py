@@ -11,7 +11,7 @@ import pytest
 from exr_files import create_output
 from halation.errors import DeviceError
 from halation.graph import Graph, Input, Output, Port, Settings
-from halation.nodes import Filter, catalogue
+from halation.nodes import CurvePair, Filter, catalogue, name_curve_pairs
 from halation.renderer import Renderer, RenderRequest, open_device
 from halation.renderer.jobs.job import OutputSettings, run_job
 from halation.resources.sandbox import UNRESTRICTED
@@ -54,6 +54,25 @@ def test_what_a_move_takes_out_of_the_frame_comes_back(run, overscan: float) -> 
     picture = make_picture()
     graph = chain(AWAY, NODES["exposure"](stops=1.0), BACK, overscan=overscan)
     np.testing.assert_array_equal(run(graph, {"picture": picture})[..., :3], 2.0 * picture[..., :3])
+
+
+def test_what_a_warp_takes_out_of_the_frame_comes_back(run) -> None:
+    """A grid whose points all move alike, and a pair of curves that does."""
+    across, down = MOVED[0] / WIDTH, MOVED[1] / HEIGHT
+    points = {
+        f"point_{row + 1}{column + 1}": (column / 3 + across, row / 3 + down) for row in range(4) for column in range(4)
+    }
+    places = {"start": (0.3, 0.2), "middle": (0.4, 0.5), "end": (0.3, 0.8)}
+    pair = {f"from_{name}": place for name, place in places.items()}
+    pair |= {f"to_{name}": (place[0] + across, place[1] + down) for name, place in places.items()}
+    curves = name_curve_pairs(curve=CurvePair(**pair))
+    picture = make_picture()
+    for warp in (
+        NODES["grid_warp"](**points, kernel="nearest"),
+        NODES["spline_warp"](curves=curves, amount=1.0, show="first", edge="black"),
+    ):
+        made = run(chain(warp, NODES["exposure"](stops=1.0), BACK), {"picture": picture})
+        np.testing.assert_allclose(made[1:-1, 1:-1, :3], 2.0 * picture[1:-1, 1:-1, :3], atol=1e-4)
 
 
 def test_without_overscan_it_is_lost(run) -> None:
