@@ -12,7 +12,8 @@ Three steps lead from a lowered program to what is made:
 1. `add_data_windows` goes from the inputs to the outputs. A file says its own data window, and a formula has pixels
    everywhere. A function of one pixel has those of what it reads; noise over a picture ends where the picture does. A
    blur that takes outside to be black grows the window, and a placement moves it by its matrix. Nodes that warp a
-   picture may show something of it everywhere. Nothing goes further than the overscan.
+   picture may show something of it everywhere, and the camera of a scene sees what lies around its frame. Nothing goes
+   further than the overscan.
 2. Passes are found. Operations share one only if their data windows are the same, so no function is evaluated where its
    inputs have ended, and its result is not 0.
 3. `add_extents` goes back from the outputs, which are the frame: of each picture only those pixels of the data window
@@ -35,7 +36,20 @@ from msgspec.structs import replace
 
 from .areas import Neighborhood, Region
 from .fusion.fuse import PassGroup
-from .ir import Call, Convolve, FrameCrop, Gather, LoweredProgram, Op, OpaqueProgram, Parameter, Placement, Read, Ref
+from .ir import (
+    Call,
+    Convolve,
+    FrameCrop,
+    Gather,
+    LoweredProgram,
+    Op,
+    OpaqueProgram,
+    Parameter,
+    Placement,
+    Raster,
+    Read,
+    Ref,
+)
 from .tiling.regions import find_regions
 
 _ROUNDING = 1e-6
@@ -70,7 +84,7 @@ def _find_data_windows(program: LoweredProgram, overscan: float, whole: Set[str]
     ending = _find_ending(program, whole)
     known = _Pictures(program, windows := dict[Ref, Region](), boundless := set[int]())
     for index, op in enumerate(program.ops):
-        if op.is_indivisible or index in ending or op.size == (1, 1):
+        if index in ending or op.size == (1, 1):
             continue
         frame = Region.whole(op.size)
         most = frame.grow(math.ceil(overscan * op.size[1]))
@@ -136,6 +150,12 @@ def _find_window(op: Op, pictures: _Pictures, most: Region) -> Region | None:
 
 
 @_find_window.register
+def _(op: Raster, pictures: _Pictures, most: Region) -> Region | None:
+    """A camera sees what lies around its frame as well."""
+    return most
+
+
+@_find_window.register
 def _(op: Read, pictures: _Pictures, most: Region) -> Region | None:
     return op.data_window or Region.whole(op.size)
 
@@ -156,6 +176,8 @@ def _(op: Call, pictures: _Pictures, most: Region) -> Region | None:
 @_find_window.register
 def _(op: Gather, pictures: _Pictures, most: Region) -> Region | None:
     """Where it reads something else than what the edge mode invents."""
+    if op.is_indivisible:
+        return Region.whole(op.size)
     refs = {item: item.operand for item in op.accessors if isinstance(item.operand, Ref)}
     read = {item: ref for item, ref in refs.items() if pictures.is_bounded(ref)}
     if not read:

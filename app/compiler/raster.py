@@ -26,6 +26,7 @@ def write_vertex_text(library: str) -> str:
 uniform vec4[9] cameras;
 uniform vec4[9] motions;
 uniform float near;
+uniform vec4 window;
 {inputs}
 {_declare_varyings("out")}
 void main() {{
@@ -39,7 +40,7 @@ void main() {{
     v_after = raster_seen(cameras, 6, after);
     v_uv = uv, v_albedo = albedo, v_emission = emission, v_metal_rough = metal_rough;
     v_object_material = object_material_moving.xy;
-    gl_Position = raster_clip(v_now, near);
+    gl_Position = raster_clip(v_now, near, window);
 }}
 """
 

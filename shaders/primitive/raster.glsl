@@ -7,8 +7,11 @@ vec3 raster_seen(const vec4 cameras[9], int first, vec3 place) {
 }
 
 // The position in clip space. Row 0 of the picture is row 0 of the texture. There is no far plane: everything beyond
-// `near` is kept.
-vec4 raster_clip(vec3 seen, float near) { return vec4(2.0 * seen.xy - seen.z, seen.z - 2.0 * near, seen.z); }
+// `near` is kept. `window` says which part is drawn, as fractions of the part: the size of the picture, and the place of
+// the part in it.
+vec4 raster_clip(vec3 seen, float near, vec4 window) {
+    return vec4(2.0 * (seen.xy * window.xy - seen.z * window.zw) - seen.z, seen.z - 2.0 * near, seen.z);
+}
 
 vec3 raster_moved(const vec4 motions[9], int first, vec3 place) { return raster_seen(motions, first, place); }
 

@@ -11,7 +11,7 @@ import pytest
 from exr_files import create_output
 from halation.errors import DeviceError
 from halation.graph import Graph, Input, Output, Port, Settings
-from halation.nodes import CurvePair, Filter, catalogue, name_curve_pairs
+from halation.nodes import CurvePair, Filter, Kind, catalogue, name_curve_pairs
 from halation.renderer import Renderer, RenderRequest, open_device
 from halation.renderer.jobs.job import OutputSettings, run_job
 from halation.resources.sandbox import UNRESTRICTED
@@ -127,6 +127,27 @@ def test_a_lens_and_back_loses_nothing(run, k1: float, edge: str, ring: int) -> 
     assert np.abs(made / 2.0 - picture)[inner].max() < 1e-3
     lost = run(chain(out, NODES["exposure"](stops=1.0), back, overscan=0.0), {"picture": picture})
     assert k1 < 0 or np.abs(lost / 2.0 - picture)[inner].max() > 0.02
+
+
+@pytest.mark.parametrize("channel", ["depth", "albedo"])
+def test_a_scene_is_drawn_beyond_its_frame(run, channel: str) -> None:
+    """As a camera with a larger sensor draws it, whose pixels are the same."""
+    across, down = WIDTH // 4, HEIGHT // 4
+
+    def draw(focal: float, size: tuple[int, int], *nodes: Filter) -> np.ndarray:
+        graph = Graph(settings=Settings(size=size, overscan=0.5)).add("scene", NODES["scene"](focal=focal))
+        last = Port("scene", channel)
+        for number, node in enumerate(nodes):
+            graph = graph.add(f"n{number}", node).connect(last, Port(f"n{number}", "image"))
+            last = Port(f"n{number}", "out")
+        graph = graph.add_output("out", Output(Kind.IMAGE if channel == "albedo" else Kind.FIELD))
+        return run(graph.connect(last, Port("outputs", "out")))
+
+    wide = draw(40.0 * WIDTH / (WIDTH + 2 * across), (WIDTH + 2 * across, HEIGHT + 2 * down))[:HEIGHT, :WIDTH]
+    made = draw(40.0, (WIDTH, HEIGHT), move(float(across), float(down)))
+    differs = np.abs(made[..., :3] - wide[..., :3]).max(axis=2) > 1e-4 * (1.0 + np.abs(wide[..., :3]).max(axis=2))
+    assert differs.mean() < 0.003  # pixels on an edge fall to one side or the other
+    assert np.abs(made[:down, :, :3]).max() > 0.1
 
 
 def write_overscan(path: Path, margin: tuple[int, int], pixels: np.ndarray) -> str:

@@ -35,7 +35,8 @@ def find_regions(
         is_there = all(ref in cached_refs for ref in written)
         size = program.shape(written[0]).size
         whole = is_there or any(program.ops[index].is_indivisible for index in fused.members)
-        region = program.extent(written[0]) if whole else _unite([regions[ref] for ref in written])
+        region = _unite([regions[ref] for ref in written])
+        region = program.extent(written[0]).union(region) if whole else region
         regions |= {ref: region if program.shape(ref).size == size else program.extent(ref) for ref in fused.writes}
         for ref, part in _find_reads(program, fused, region).items():
             part = program.extent(ref) if is_there else part
