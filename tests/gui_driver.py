@@ -28,6 +28,10 @@ FRAME_SECONDS = 1.0 / 60.0
 PATIENCE = 120.0
 """Seconds of real time after which what never became true fails a test; a busy machine needs some of them."""
 
+PROMPT, REST = 0.5, 0.02
+"""Seconds after which what a test waits for is taken for the work of another process, and then between two frames: a
+window that draws all the time takes the processor from whoever it waits for."""
+
 UNSEEN = 0.1
 """The part of the window's width and height that is drawn while nobody looks. With 0 the library ends the process."""
 
@@ -64,9 +68,12 @@ class Ui:
 
     def until(self, question: Callable[[], bool], seconds: float = PATIENCE) -> None:
         """Wait for something to become true."""
-        end = time.monotonic() + seconds
+        began = time.monotonic()
         while not question():
-            assert time.monotonic() < end, "this never became true"
+            waited = time.monotonic() - began
+            assert waited < seconds, "this never became true"
+            if waited > PROMPT:
+                time.sleep(REST)
             self.ctx.yield_()
 
     def settled(self) -> None:
