@@ -153,6 +153,8 @@ def test_the_demo_and_every_command(tmp_path):
 
 OPTIONAL = {
     "av": "the extra 'video'",
+    "cma": "the extra 'fit'",
+    "scipy": "the extra 'fit'",
     "distributed": "the extra 'cluster'",
     "pyoidn": "the extra 'denoise'",
     "pytest": "the plug-in of pytest, which loads it",
