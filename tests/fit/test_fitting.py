@@ -153,6 +153,7 @@ def look_up(codes: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.nightly
+@pytest.mark.timeout(900)
 def test_an_unseen_table_of_colors_is_met(renderer, tmp_path: Path):
     """Curves, curves over the hue and a matrix come as close as 2 (CIEDE2000) to a graded frame of 8 bits."""
     preset = next(path for path in paths() if path.stem == "soft_bloom")
