@@ -43,6 +43,9 @@ def test_a_line_runs(cli, repository, monkeypatch, line):
     words = shlex.split(re.sub(r"\[(\w+)\]", r"\1", line))[1:]
     if words[0] == "reproduce" and not Path(words[1]).exists():
         assert cli("render", "graph.json", "-o", words[1]).code == 0
+    if words[0] == "fit":
+        reference = words[words.index("--to") + 1]
+        assert cli("render", "graph.json", "--set", "grade.stops=1", "-o", reference).code == 0
     result = cli(*words)
     assert result.code == 0, result
     assert words[0] != "check" or "warning" not in result.out
