@@ -1,4 +1,4 @@
-"""The tables of docs/command-line.md and docs/fit.md, from what the commands declare."""
+"""The tables of docs/command-line.md and of pages about single commands, from what the commands declare."""
 
 from __future__ import annotations
 

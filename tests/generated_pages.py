@@ -129,6 +129,7 @@ PARTS: Mapping[str, Callable[[str], str]] = MappingProxyType(
         "docs/checking.md": fill_rules,
         "docs/command-line.md": fill_tables,
         "docs/fit.md": fill_tables,
+        "docs/running.md": fill_tables,
         "docs/lighting.md": fill_light_fields,
         "docs/time.md": fill_functions,
         "pyproject.toml": fill_packages,

@@ -183,7 +183,7 @@ def test_without_a_scene_there_is_nothing_to_orbit(gui, path: Path) -> None:
         ui.editor.viewer.zoom = 2.0
         ui.wait(2)
         before = orbit(ui)
-        ui.drag(inside(ui, 0.5, 0.5), inside(ui, 0.6, 0.5))
+        ui.drag(inside(ui, 0.3, 0.3), inside(ui, 0.4, 0.3))
         assert orbit(ui) == before and ui.editor.viewer.pan != pan
 
     gui(body, path)
