@@ -108,8 +108,10 @@ def test_pixels_are_those_of_a_window_that_is_drawn_whole(window: Window) -> Non
             assert len(painter.drawn_boxes) == 1, "all of it was drawn"
             if lists == [drawn.memory for drawn in painter._lists]:
                 break
-        if np.any(partial != window.device.read_window(measure_window())):
-            differing.append(act)
+        differs = np.any(partial != window.device.read_window(measure_window()), axis=2)
+        if differs.any():
+            rows, columns = (np.flatnonzero(differs.any(axis=1 - axis)) for axis in (0, 1))
+            differing.append(f"{act}: rows {rows[0]} to {rows[-1]}, columns {columns[0]} to {columns[-1]}")
 
     def steps(window: Window) -> Iterator[bool]:
         editor = window.editor
