@@ -198,6 +198,25 @@ class Items(Struct, frozen=True, dict=True):
 Fraction = Annotated[float, Slider(0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0)]
 RGBA = Annotated[tuple[float, float, float, float], Swatch()]
 Position = Annotated[tuple[float, float], Handle()]
+PatternOffset = Annotated[
+    tuple[float, float], Slider(-500.0, 500.0, unit="px", doc="How far the pattern moves, to the right and down.")
+]
+PatternPeriod = Annotated[
+    tuple[float, float],
+    Slider(
+        0.0,
+        2048.0,
+        unit="px",
+        minimum=0.0,
+        doc="After how many pixels the pattern repeats, across and down; 0 never does.",
+    ),
+]
+PatternLoop = Annotated[
+    float,
+    Slider(
+        0.0, 10.0, unit="ratio", minimum=0.0, doc="After how much evolution the pattern is the same again; 0 is never."
+    ),
+]
 FilePath = Annotated[str, File()]
 RenderPath = Annotated[str, File(holds="render")]
 TablePath = Annotated[str, File(holds="table")]

@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Field, OutputSocket, Pointwise, Slider, Vector
+from .._declare import Doc, Field, OutputSocket, PatternLoop, PatternOffset, PatternPeriod, Pointwise, Slider, Vector
 
 
 class CurlNoise(Pointwise):
@@ -42,29 +42,17 @@ class CurlNoise(Pointwise):
     ] = 1.0
     seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number gives another flow.")] = 0
     evolution: Annotated[float, Slider(0.0, 10.0, unit="ratio", doc="Changes the flow smoothly.")] = 0.0
-    offset: Annotated[
-        tuple[float, float], Slider(-500.0, 500.0, unit="px", doc="How far the pattern moves, to the right and down.")
-    ] = (0.0, 0.0)
+    offset: PatternOffset = (0.0, 0.0)
     period: Annotated[
-        tuple[float, float],
-        Slider(
-            0.0,
-            2048.0,
-            unit="px",
-            minimum=0.0,
-            doc="After how many pixels the pattern repeats, across and down; 0 never does. "
-            "The size changes so that a multiple of six eddies fits.",
+        PatternPeriod,
+        Doc(
+            "After how many pixels the pattern repeats, across and down; 0 never does. "
+            "The size changes so that a multiple of six eddies fits."
         ),
     ] = (0.0, 0.0)
     loop: Annotated[
-        float,
-        Slider(
-            0.0,
-            10.0,
-            unit="ratio",
-            minimum=0.0,
-            doc="After how much evolution the pattern is the same again; 0 is never. A multiple of six is best.",
-        ),
+        PatternLoop,
+        Doc("After how much evolution the pattern is the same again; 0 is never. A multiple of six is best."),
     ] = 0.0
 
     vector = OutputSocket(Vector(width=2, doc="The flow: x points right and y down."))

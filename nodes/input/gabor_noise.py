@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Dial, Field, Image, OutputSocket, Pointwise, Slider
+from .._declare import Dial, Field, Image, OutputSocket, PatternOffset, PatternPeriod, Pointwise, Slider
 
 
 class GaborNoise(Pointwise):
@@ -67,19 +67,8 @@ class GaborNoise(Pointwise):
         float,
         Slider(0.0, 10.0, unit="ratio", doc="Moves each wave through its place; whole numbers give the same picture."),
     ] = 0.0
-    offset: Annotated[
-        tuple[float, float], Slider(-500.0, 500.0, unit="px", doc="How far the pattern moves, to the right and down.")
-    ] = (0.0, 0.0)
-    period: Annotated[
-        tuple[float, float],
-        Slider(
-            0.0,
-            2048.0,
-            unit="px",
-            minimum=0.0,
-            doc="After how many pixels the pattern repeats, across and down; 0 never does.",
-        ),
-    ] = (0.0, 0.0)
+    offset: PatternOffset = (0.0, 0.0)
+    period: PatternPeriod = (0.0, 0.0)
 
     out = OutputSocket(Image(doc="The value as an opaque gray."))
     value = OutputSocket(Field(doc="The value, 0..1. The average is 0.5."))

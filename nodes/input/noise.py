@@ -1,6 +1,17 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Field, Image, OutputSocket, Pointwise, Slider, Vector
+from .._declare import (
+    Doc,
+    Field,
+    Image,
+    OutputSocket,
+    PatternLoop,
+    PatternOffset,
+    PatternPeriod,
+    Pointwise,
+    Slider,
+    Vector,
+)
 
 
 class Noise(Pointwise):
@@ -66,30 +77,19 @@ class Noise(Pointwise):
     warp: Annotated[
         float, Slider(0.0, 8.0, unit="ratio", doc="How far warped noise is distorted, as a factor on the size.")
     ] = 2.0
-    offset: Annotated[
-        tuple[float, float], Slider(-500.0, 500.0, unit="px", doc="How far the pattern moves, to the right and down.")
-    ] = (0.0, 0.0)
+    offset: PatternOffset = (0.0, 0.0)
     period: Annotated[
-        tuple[float, float],
-        Slider(
-            0.0,
-            2048.0,
-            unit="px",
-            minimum=0.0,
-            doc="After how many pixels the pattern repeats, across and down; 0 never does. "
-            "The size changes so that a whole number of cells fits, "
-            "of simplex noise a multiple of six.",
+        PatternPeriod,
+        Doc(
+            "After how many pixels the pattern repeats, across and down; 0 never does. "
+            "The size changes so that a whole number of cells fits, of simplex noise a multiple of six."
         ),
     ] = (0.0, 0.0)
     loop: Annotated[
-        float,
-        Slider(
-            0.0,
-            10.0,
-            unit="ratio",
-            minimum=0.0,
-            doc="After how much evolution the pattern is the same again; 0 is never. "
-            "A whole number is best, for simplex noise a multiple of six.",
+        PatternLoop,
+        Doc(
+            "After how much evolution the pattern is the same again; 0 is never. "
+            "A whole number is best, for simplex noise a multiple of six."
         ),
     ] = 0.0
 

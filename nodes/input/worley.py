@@ -1,6 +1,19 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Field, Fraction, Image, OutputSocket, Pointwise, ProxyNote, Slider, Vector
+from .._declare import (
+    Doc,
+    Field,
+    Fraction,
+    Image,
+    OutputSocket,
+    PatternLoop,
+    PatternOffset,
+    PatternPeriod,
+    Pointwise,
+    ProxyNote,
+    Slider,
+    Vector,
+)
 
 
 class Worley(Pointwise):
@@ -34,29 +47,16 @@ class Worley(Pointwise):
     evolution: Annotated[float, Slider(0.0, 10.0, unit="ratio", doc="Moves the slice: changes the cells smoothly.")] = (
         0.0
     )
-    offset: Annotated[
-        tuple[float, float], Slider(-500.0, 500.0, unit="px", doc="How far the pattern moves, to the right and down.")
-    ] = (0.0, 0.0)
+    offset: PatternOffset = (0.0, 0.0)
     period: Annotated[
-        tuple[float, float],
-        Slider(
-            0.0,
-            2048.0,
-            unit="px",
-            minimum=0.0,
-            doc="After how many pixels the pattern repeats, across and down; 0 never does. "
-            "The size changes so that a whole number of cells fits.",
+        PatternPeriod,
+        Doc(
+            "After how many pixels the pattern repeats, across and down; 0 never does. The size changes so that a "
+            "whole number of cells fits."
         ),
     ] = (0.0, 0.0)
     loop: Annotated[
-        float,
-        Slider(
-            0.0,
-            10.0,
-            unit="ratio",
-            minimum=0.0,
-            doc="After how much evolution the pattern is the same again; 0 is never. A whole number is best.",
-        ),
+        PatternLoop, Doc("After how much evolution the pattern is the same again; 0 is never. A whole number is best.")
     ] = 0.0
 
     out = OutputSocket(Image(doc="The distance as an opaque gray."))
