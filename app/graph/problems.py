@@ -236,8 +236,11 @@ def _default_fault(name: str, end: Input) -> str | None:
 
 
 def _suggest_key(key: str, keys: Collection[str]) -> str:
-    """The key of the format that the user may mean, as the end of a sentence; "" if none is similar."""
-    hint = did_you_mean(key, keys)
+    """The key of the format that the user may mean, as the end of a sentence; "" if none is similar.
+
+    One of the same name does not help: it stands where it means nothing, such as the version of a node of code.
+    """
+    hint = did_you_mean(key, [name for name in keys if name != key])
     return hint if "did you mean" in hint else ""
 
 

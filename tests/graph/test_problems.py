@@ -157,6 +157,14 @@ def test_leftover_keys_are_mentioned() -> None:
     ]
 
 
+def test_a_leftover_key_is_not_its_own_suggestion() -> None:
+    graph = changed(small(), extra={"nodes.gain": {"version": 3, "verson": 3}})
+    assert [problem.sentence for problem in problems(graph)] == [
+        "nodes.gain.version means nothing to this version and is only kept",
+        "nodes.gain.verson means nothing to this version and is only kept; did you mean 'version'?",
+    ]
+
+
 def test_groups_say_where() -> None:
     body = linked(small(), "soften.image", "nobody.out").set(Port("gain", "gain"), 3)
     graph = small().add("g", Group(Graph({"h": Group(body)}), values={"x": 1.0}))
