@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -87,19 +88,12 @@ def write_picture(
         UsageError: unknown ending, compression, view or color space, or layers that such a file cannot hold.
         OutputError: the file could not be written; an older one is still there.
     """
-    layers, frames = (
-        {name: array if array.ndim == 3 else array[..., None] for name, array in layers.items()},
-        frames or {},
-    )
+    layers = {name: array if array.ndim == 3 else array[..., None] for name, array in layers.items()}
+    encoding, metadata, frames = encoding or Encoding(view), metadata or {}, frames or {}
     sizes = {name: frames[name][2:] if name in frames else array.shape[1::-1] for name, array in layers.items()}
-    encoding = encoding or Encoding(view)
     format = _check_layers(path, {name: kinds[name] for name in layers}, sizes, compression, encoding)
-    metadata = metadata or {}
     if format == "openexr":
-        parts = encode_exr_parts(layers, kinds, precision, compression, encoding)
-        for part, name in zip(parts, layers, strict=True):
-            if name in frames:
-                _set_windows(part.spec, frames[name])
+        parts = encode_exr_parts(layers, kinds, precision, compression, encoding, frames)
     else:
         layer_name = choose_shown_layer(path, {name: kinds[name] for name in layers})
         is_data, array = not kinds[layer_name].is_color, layers[layer_name]
@@ -183,7 +177,12 @@ def _choose_format(path: Path) -> str:
 
 
 def encode_exr_parts(
-    layers: Mapping[str, Array], kinds: Mapping[str, Kind], precision: Precision, compression: str, encoding: Encoding
+    layers: Mapping[str, Array],
+    kinds: Mapping[str, Kind],
+    precision: Precision,
+    compression: str,
+    encoding: Encoding,
+    frames: Mapping[str, PixelRectangle] = MappingProxyType({}),
 ) -> list[EncodedPart]:
     """The parts of an EXR that holds these layers, and their numbers."""
     parts: list[EncodedPart] = []
@@ -203,6 +202,8 @@ def encode_exr_parts(
             array = encoding.to_numbers(array)
         if half:
             array = to_half(array)
+        if name in frames:
+            _set_windows(spec, frames[name])
         parts.append(EncodedPart(spec, np.ascontiguousarray(array)))
     return parts
 
