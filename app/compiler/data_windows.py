@@ -39,7 +39,6 @@ from .fusion.fuse import PassGroup
 from .ir import (
     Call,
     Convolve,
-    FrameCrop,
     Gather,
     LoweredProgram,
     Op,
@@ -61,8 +60,7 @@ def add_data_windows(program: LoweredProgram, overscan: float, whole: Set[str] =
 
     Outputs end at their frame, except those in `whole`. One that others read beyond it gets a copy that ends there.
     """
-    program = _crop_outputs(replace(program, data_windows=_find_data_windows(program, overscan, whole)), whole)
-    return replace(program, data_windows=_find_data_windows(program, overscan, whole))
+    return _crop_outputs(replace(program, data_windows=_find_data_windows(program, overscan, whole)), whole)
 
 
 def add_extents(program: LoweredProgram, passes: Sequence[PassGroup], whole: Set[str] = frozenset()) -> LoweredProgram:
@@ -130,7 +128,7 @@ def _find_last(program: LoweredProgram, whole: Set[str]) -> dict[str, Ref]:
 
 
 def _crop_outputs(program: LoweredProgram, whole: Set[str]) -> LoweredProgram:
-    """A program with copies of those outputs that go on beyond their frame and are not to."""
+    """A program with copies of those outputs that go on beyond their frame and are not to. All other windows stay."""
     ops, outputs = list(program.ops), dict(program.outputs)
     last = {*_find_last(program, whole), *whole}
     for name, ref in program.outputs.items():
@@ -138,7 +136,7 @@ def _crop_outputs(program: LoweredProgram, whole: Set[str]) -> LoweredProgram:
             shape = program.shape(ref)
             glsl = glsl_type(shape.channels)
             owner = program.ops[ref.op].owner
-            ops.append(FrameCrop((shape,), owner, "primitive/convert", f"as_{glsl}", (Parameter(glsl, ref),)))
+            ops.append(Call((shape,), owner, "primitive/convert", f"as_{glsl}", (Parameter(glsl, ref),)))
             outputs[name] = Ref(len(ops) - 1)
     return replace(program, ops=tuple(ops), outputs=MappingProxyType(outputs))
 
@@ -158,11 +156,6 @@ def _(op: Raster, pictures: _Pictures, most: Region) -> Region | None:
 @_find_window.register
 def _(op: Read, pictures: _Pictures, most: Region) -> Region | None:
     return op.data_window or Region.whole(op.size)
-
-
-@_find_window.register
-def _(op: FrameCrop, pictures: _Pictures, most: Region) -> Region | None:
-    return Region.whole(op.size)
 
 
 @_find_window.register

@@ -161,10 +161,6 @@ class Call(FunctionOp, frozen=True):
         return library.is_cheap(self.shader, self.function, self.owner)
 
 
-class FrameCrop(Call, frozen=True):
-    """A copy of a picture that ends at its frame."""
-
-
 class ColorCall(Call, frozen=True, kw_only=True):
     """A pointwise function that a color library wrote: its text is in `program`, not in a file."""
 

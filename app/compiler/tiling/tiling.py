@@ -141,8 +141,8 @@ def _find_outside(program: LoweredProgram, passes: Sequence[PassGroup]) -> set[R
 
 
 def _count_bytes(program: LoweredProgram, texels: Mapping[Ref, str], ref: Ref) -> int:
-    """The bytes of a whole picture."""
-    return texture_bytes(program.shape(ref).size, texels[ref])
+    """The bytes of a whole picture, with what is made of it beyond its frame."""
+    return texture_bytes(program.extent(ref).size, texels[ref])
 
 
 def _check_whole_pictures(program: LoweredProgram, passes: Sequence[PassGroup], target: Target) -> None:
