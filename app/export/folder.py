@@ -9,28 +9,53 @@ from types import MappingProxyType
 
 from ..errors import OutputError
 from ..resources.atomic_write import write_bytes_atomically, write_text_atomically
+from ..resources.sandbox import Sandbox
 from .order import ExportOrder, ExportReport
 from .package import Package, assemble_package
 from .package.dialects import COVERING_VERTEX, DIALECTS
 from .shipped_files import read_shipped_text
 
 READERS: Mapping[str, str] = MappingProxyType(
-    {"read_package.py": "read_package.py.txt", "read_package.js": "read_package.js", "README.md": "package_readme.md"}
+    {
+        "read_package.py": "read_package.py.txt",
+        "package_values.py": "package_values.py.txt",
+        "read_package.js": "read_package.js",
+        "README.md": "package_readme.md",
+    }
 )
 """Files of the folder that are the same for all graphs, and the assets that they are copies of."""
 
 
 def export_folder(order: ExportOrder) -> ExportReport:
     """Write the folder. Raises GraphError, OutputError."""
+    package = assemble_package(order)
+    return write_package(order, package, list_texts(package), READERS)
+
+
+def list_texts(package: Package) -> dict[str, str]:
+    """The texts of the folder by their names in it, but for the readers."""
+    texts: dict[str, str] = {"passes.json": json.dumps(package.document, separators=(",", ":")) + "\n"}
+    for dialect, write in DIALECTS.items():
+        texts[f"{dialect}/cover.vert"] = write(COVERING_VERTEX)
+        for number, (fragment, vertex) in enumerate(package.programs):
+            texts[f"{dialect}/{number}.frag"] = write(fragment)
+            if vertex:
+                texts[f"{dialect}/{number}.vert"] = write(vertex)
+    return texts
+
+
+def write_package(
+    order: ExportOrder, package: Package, texts: Mapping[str, str], readers: Mapping[str, str]
+) -> ExportReport:
+    """Write texts by their names in the folder, pixels, and the assets that readers are. Raises OutputError."""
     assert order.output is not None
     folder = order.output
-    package = assemble_package(order)
-    _make_folder(folder)
-    for name, text in list_texts(package).items():
-        _make_folder((folder / name).parent)
+    _make_folder(folder, order.sandbox)
+    for name, text in {**texts, **{name: read_shipped_text(asset) for name, asset in readers.items()}}.items():
+        _make_folder((folder / name).parent, order.sandbox)
         write_text_atomically(folder / name, text, sandbox=order.sandbox)
     for number, blob in enumerate(package.blobs):
-        _make_folder(folder / "pixels")
+        _make_folder(folder / "pixels", order.sandbox)
         write_bytes_atomically(folder / f"pixels/{number}.bin", blob, sandbox=order.sandbox)
     passes = [len(plan["passes"]) for variants in package.document["plans"] for plan in variants]
     figures: dict[str, float | str] = {
@@ -42,19 +67,9 @@ def export_folder(order: ExportOrder) -> ExportReport:
     return ExportReport((str(folder),), package.notes, figures)
 
 
-def list_texts(package: Package) -> dict[str, str]:
-    """The texts of the folder by their names in it."""
-    texts: dict[str, str] = {"passes.json": json.dumps(package.document, separators=(",", ":")) + "\n"}
-    for dialect, write in DIALECTS.items():
-        texts[f"{dialect}/cover.vert"] = write(COVERING_VERTEX)
-        for number, (fragment, vertex) in enumerate(package.programs):
-            texts[f"{dialect}/{number}.frag"] = write(fragment)
-            if vertex:
-                texts[f"{dialect}/{number}.vert"] = write(vertex)
-    return texts | {name: read_shipped_text(asset) for name, asset in READERS.items()}
-
-
-def _make_folder(folder: Path) -> None:
+def _make_folder(folder: Path, sandbox: Sandbox) -> None:
+    if reason := sandbox.find_write_fault(folder):
+        raise OutputError(f"{folder}: {reason}")
     try:
         folder.mkdir(parents=False, exist_ok=True)
     except OSError as error:

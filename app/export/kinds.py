@@ -39,6 +39,11 @@ KINDS: Mapping[str, ExportKind] = MappingProxyType(
             ExportKind("isf", ".fs", "one shader in the Interactive Shader Format", "isf", "export_shader", True),
             ExportKind("web", ".html", "one page with the picture and a slider for each control", "web", "export_page"),
             ExportKind("glsl", "", "a folder with passes of GLSL, and readers for them", "folder", "export_folder"),
+            ExportKind("wgsl", "", "a folder with passes of WGSL, and a reader", "wgsl.folder", "export_wgsl"),
+            ExportKind(
+                "python", ".py", "a script of numpy and scipy, for papers and teaching", "python", "export_script", True
+            ),
+            ExportKind("reshade", ".fx", "an effect of ReShade, for games", "reshade.files", "export_effect"),
             ExportKind("cube", ".cube", "a table of colors with a shaper, for grading programs", "lut", "export_cube"),
             ExportKind("clf", ".clf", "a table in the Common LUT Format (SMPTE ST 2136)", "lut", "export_clf"),
             ExportKind("png", ".png", "a table as a strip of squares, for game engines", "lut", "export_strip"),

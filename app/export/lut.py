@@ -32,6 +32,15 @@ from ..resources.atomic_write import write_bytes_atomically
 from .color_function import find_color_input
 from .order import ExportOrder, ExportReport
 
+_OPAQUE = 1e-4
+"""How far from 1 the alpha of opaque colors may be: what the rounding of floats may have added. Chosen by judgement."""
+
+_GRAY_PART = 8
+"""One of so many test colors is gray, which most looks treat in its own way. Chosen by judgement."""
+
+_CHECK_WIDTH = 1024
+"""Colors in a row of the picture that is measured: any number gives the same."""
+
 USUAL_HIGH = 16.0
 """The brightest light of a table where no picture says it: a white wall in the sun is 1, so four stops above it."""
 
@@ -159,7 +168,7 @@ class _TableExport:
         colors = self.renderer.render(order.graph, request)["table"].astype(np.float32)
         if colors.shape[2] < 3:
             raise GraphError("the picture has no color: a table holds red, green and blue")
-        if colors.shape[2] == 4 and np.abs(colors[..., 3] - 1.0).max() > 1e-4:
+        if colors.shape[2] == 4 and np.abs(colors[..., 3] - 1.0).max() > _OPAQUE:
             raise GraphError("the graph makes opaque colors transparent, and a table of colors holds no alpha")
         return self._encode(np.nan_to_num(colors[..., :3]))
 
@@ -180,10 +189,10 @@ class _TableExport:
         colors = self.picture
         if colors is None or not colors.size:
             places = np.random.default_rng(1).random((TEST_COLORS, 3))
-            places[: TEST_COLORS // 8] = places[: TEST_COLORS // 8, :1]
+            places[: TEST_COLORS // _GRAY_PART] = places[: TEST_COLORS // _GRAY_PART, :1]
             colors = self.shaper.decode(places).astype(np.float32)
         colors = colors.reshape(1, -1, 3)
-        width = 1024
+        width = _CHECK_WIDTH
         count = -(-colors.shape[1] // width) * width
         rows = np.resize(colors, (1, count, 3)).reshape(-1, width, 3)
         errors = np.abs(apply(rows) - self._render_colors(rows)).reshape(-1, 3)[: colors.shape[1]]

@@ -99,14 +99,14 @@ class _Assembly:
             if span := spans.get(knob.name):
                 places = [x for x in places if span.low <= x <= span.high]
             places = find_needed_places(self.samples[knob.name], places)
-            taken = {x: planner.take_like(rest, {**middle, knob.name: x}, knob, phase) for x in places}
-            by_knob[knob.name] = {x: sample for x, sample in taken.items() if sample}
+            samples = {x: planner.take_like(rest, {**middle, knob.name: x}, knob, phase) for x in places}
+            by_knob[knob.name] = {x: sample for x, sample in samples.items() if sample}
         checks = planner.sample_checks(middle, knobs, spans, rest, phase)
 
         @cache
         def sample_pairs(first: str, second: str) -> PairSamples:
-            one, other = ((name, list(by_knob[name])) for name in (first, second))
-            return planner.sample_pairs(one, other, middle, rest, phase)
+            pair = [(name, list(by_knob[name])) for name in (first, second)]
+            return planner.sample_pairs(pair[0], pair[1], middle, rest, phase)
 
         return self._write_plan(VariantSamples(rest, by_knob, checks, sample_pairs), phase)
 

@@ -10,6 +10,12 @@ import numpy as np
 
 from .sampling import Array, Sample
 
+_LEAST_NUMBER, _LEAST_LARGEST = 1e-12, 1e-9
+"""What the largest number counts as at least, so that nothing is divided by 0: below what matters in a picture."""
+
+_WHOLE_DOUBLES = 1e15
+"""Below it, doubles hold all whole numbers and are written without an exponent."""
+
 _SAME = 1e-7
 """Difference of numbers, as a part of the largest, that is rounding: half of what a float of 24 bits resolves."""
 LINE = 2e-5
@@ -41,7 +47,7 @@ def write_slot(
     for name, group in samples.items():
         places = np.array(list(group))
         rows = np.array([_pad(sample.slots[number].numbers, length) for sample in group.values()])
-        largest = max(float(np.abs(rows).max(initial=0.0)), 1e-12)
+        largest = max(float(np.abs(rows).max(initial=0.0)), _LEAST_NUMBER)
         if len(places) > 1 and np.abs(rows - rest).max(initial=0.0) > _SAME * largest:
             is_snapped = name in snapped_knobs
             keep = list(range(len(places))) if is_snapped else simplify(places, rows)
@@ -95,7 +101,7 @@ def add_grids(
             if (sample := rows[i][j]) is not None:
                 numbers = _pad(sample.slots[number].numbers, length)
                 rest[i, j] = numbers - read_slot({**record, "grids": ()}, {first: x, second: y})
-        if np.abs(rest).max(initial=0.0) > LINE * max(float(np.abs(record["base"]).max()), 1e-12):
+        if np.abs(rest).max(initial=0.0) > LINE * max(float(np.abs(record["base"]).max()), _LEAST_NUMBER):
             values = [[_round(row) for row in line] for line in rest]
             record.setdefault("grids", []).append(
                 {"knobs": [first, second], "at": [_round(np.array(xs)), _round(np.array(ys))], "values": values}
@@ -112,7 +118,7 @@ def _interpolate_grid(grid: Record, x: float, y: float) -> Array:
 
 def simplify(places: Array, rows: Array) -> list[int]:
     """The places that a polygon needs: those on the line between their neighbors are left out."""
-    largest = max(float(np.abs(rows).max(initial=0.0)), 1e-12)
+    largest = max(float(np.abs(rows).max(initial=0.0)), _LEAST_NUMBER)
     keep = [0]
     for at in range(1, len(places) - 1):
         first, last = keep[-1], at + 1
@@ -150,7 +156,7 @@ def _choose_mode(record: Record, number: int, length: int, checks: list[Any]) ->
 
 def measure_error(record: Record, number: int, checks: list[Any]) -> float:
     """The largest error of a slot at the checks, as a part of its largest number."""
-    largest, error = 1e-9, 0.0
+    largest, error = _LEAST_LARGEST, 0.0
     for point, sample in checks:
         numbers = _pad(sample.slots[number].numbers, len(record["base"]))
         largest = max(largest, float(np.abs(numbers).max(initial=0.0)))
@@ -165,4 +171,4 @@ def _pad(numbers: Array, length: int) -> Array:
 def _round(numbers: Array) -> list[float]:
     """Numbers with the digits of a 32-bit float, whole ones without a point."""
     short = (float(f"{number:.9g}") for number in numbers.tolist())
-    return [int(number) if number == int(number) and abs(number) < 1e15 else number for number in short]
+    return [int(number) if number == int(number) and abs(number) < _WHOLE_DOUBLES else number for number in short]

@@ -48,7 +48,7 @@ def _write_older(text: str, head: str) -> str:
     if "findLSB" in needed and "findMSB" not in needed:
         needed.append("findMSB")
     functions = "".join(f"{_LATER[name]}\n" for name in reversed(needed))
-    return _HEAD.sub(lambda _: head + functions, _PRECISE.sub("", _LINE.sub("", text)))
+    return _HEAD.sub(lambda _: head + functions, remove_precise(_LINE.sub("", text)))
 
 
 def write_330(text: str) -> str:
@@ -66,9 +66,31 @@ def write_es300(text: str) -> str:
     return _write_older(text, _ES_HEAD)
 
 
+def remove_head(text: str) -> str:
+    """The text without its version, extensions and numbers of lines."""
+    return _HEAD.sub("", _LINE.sub("", text))
+
+
+def remove_precise(text: str) -> str:
+    """The text without a word that older and other languages lack."""
+    return _PRECISE.sub("", text)
+
+
+def place_varyings(text: str) -> str:
+    """The text with the place of each input and each output, in the order in which they are declared."""
+    places: dict[str, int] = {"in": 0, "out": 0}
+
+    def place(match: re.Match[str]) -> str:
+        places[match["way"]] += 1
+        flat = match["flat"] or ""
+        return f"layout(location = {places[match['way']] - 1}) {flat}{match['way']} {match['rest']}"
+
+    return _VARYING.sub(place, text)
+
+
 def write_vulkan(text: str) -> str:
     """For Vulkan: numbers in one block at binding 0, weights at 1, pictures from 2 on, all of set 0."""
-    text = _HEAD.sub("", _LINE.sub("", text)).replace("gl_VertexID", "gl_VertexIndex")
+    text = remove_head(text).replace("gl_VertexID", "gl_VertexIndex")
     numbers: list[str] = []
     bindings = 2
     samplers: list[str] = []
@@ -80,14 +102,7 @@ def write_vulkan(text: str) -> str:
             numbers.append(f"    {match['type']} {match['name']}{match['array'] or ''};")
     text = _UNIFORM.sub("", text).replace(_WEIGHTS, "layout(std140, set = 0, binding = 1) uniform Weights")
     block = ["layout(std140, set = 0, binding = 0) uniform Numbers {", *numbers, "};"] if numbers else []
-    places: dict[str, int] = {"in": 0, "out": 0}
-
-    def place(match: re.Match[str]) -> str:
-        places[match["way"]] += 1
-        flat = match["flat"] or ""
-        return f"layout(location = {places[match['way']] - 1}) {flat}{match['way']} {match['rest']}"
-
-    return "\n".join(["#version 450", *block, *samplers, _VARYING.sub(place, text)])
+    return "\n".join(["#version 450", *block, *samplers, place_varyings(text)])
 
 
 DIALECTS: Mapping[str, Callable[[str], str]] = MappingProxyType(

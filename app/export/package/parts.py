@@ -18,6 +18,12 @@ from ...resources.picture import Picture
 from .curves import PairSamples, Record, add_grids, measure_error, write_slot
 from .sampling import LoadFunction, Sample
 
+_ROUNDED = 0.51
+"""How far from a line its rounded numbers are at most: a half, and the rounding of floats."""
+
+_GRID_MARGIN = 8
+"""Grids are added until the error is so many times below what counts as poor. Chosen by judgement."""
+
 POOR_FIT = 0.02
 """The error of numbers, as a part of the largest, above which a note says so: about two steps of 8 bits for what scales
 a color of middle gray."""
@@ -46,7 +52,7 @@ class VariantSamples:
                 elif slots and slots[0].is_whole and len(xs) > 2:
                     rows = np.array([slot.numbers for slot in slots])
                     lines = rows[0] + (xs - xs[0])[:, None] / (xs[-1] - xs[0]) * (rows[-1] - rows[0])
-                    if np.abs(lines - rows).max(initial=0.0) > 0.51:
+                    if np.abs(lines - rows).max(initial=0.0) > _ROUNDED:
                         snapped.add(name)
         return frozenset(snapped)
 
@@ -75,7 +81,7 @@ class SharedParts:
         """The number of a slot with all its curves."""
         record = write_slot(place, samples.rest, samples.by_knob, samples.checks, snapped)
         if len(record.get("curves", ())) > 1:
-            add_grids(record, place, samples.pairs, samples.checks, POOR_FIT / 8)
+            add_grids(record, place, samples.pairs, samples.checks, POOR_FIT / _GRID_MARGIN)
             if measure_error(record, place, samples.checks) > POOR_FIT:
                 self.poor_knobs |= {curve["knob"] for curve in record["curves"]} - {FRAME}
         text = json.dumps(record)
@@ -101,6 +107,7 @@ class SharedParts:
                 {
                     "name": node.removeprefix("inputs."),
                     "is_input": node.startswith("inputs.") and picture.kind is Kind.IMAGE,
+                    "is_end": node.startswith("inputs."),
                     "size": list(surface.size),
                     "format": surface.texel,
                     "blob": self.add_blob(whole.tobytes()),

@@ -18,6 +18,9 @@ from .curves import PairSamples
 from .sampling import BESIDE, KnobSampler, Sample, take_apart
 from .variants import Span
 
+_MARGIN = 0.1
+"""Checks stay so far from both ends of a slider, as a part of it: curves have samples there. Chosen by judgement."""
+
 TARGET = Target("a package", 410, software=False, form="fragment", precision="float", max_samplers=16, max_targets=8)
 """What plans are made for: fragment passes with buffers of 32 bits, as WebGL 2 and OpenGL 3.3 can run them."""
 
@@ -108,7 +111,7 @@ class PointPlanner:
             for knob in knobs:
                 span = spans.get(knob.name)
                 low, high = (span.low, span.high) if span else (knob.low, knob.high)
-                point[knob.name] = knob.snap(low + (high - low) * (0.1 + 0.8 * random.random()))
+                point[knob.name] = knob.snap(low + (high - low) * (_MARGIN + (1.0 - 2.0 * _MARGIN) * random.random()))
             sample = phase.take(point)
             if sample.structure == rest.structure:
                 checks.append((point, sample))
@@ -118,8 +121,10 @@ class PointPlanner:
         self, first: tuple[str, list[float]], second: tuple[str, list[float]], middle: Point, rest: Sample, phase: Phase
     ) -> PairSamples:
         """Samples at combinations of two knobs, given with the values that each may have."""
-        (one, xs), (other, ys) = ((name, _thin([*places, middle[name]])) for name, places in (first, second))
-        rows = [[phase.take({**middle, one: x, other: y}) for y in ys] for x in xs]
+        (first_name, xs), (second_name, ys) = (
+            (name, _thin([*places, middle[name]])) for name, places in (first, second)
+        )
+        rows = [[phase.take({**middle, first_name: x, second_name: y}) for y in ys] for x in xs]
         return xs, ys, [[sample if sample.structure == rest.structure else None for sample in row] for row in rows]
 
     def _find_frames(self) -> tuple[int, int]:

@@ -167,7 +167,9 @@ def _is_straight(first: Sample, middle: Sample, last: Sample) -> bool:
     for a, b, c in zip(first.slots, middle.slots, last.slots, strict=True):
         if not len(a.numbers) == len(b.numbers) == len(c.numbers):
             return False
-        largest = max(np.abs(a.numbers).max(initial=0.0), np.abs(c.numbers).max(initial=0.0), 1e-9)
+        largest = max(
+            np.abs(a.numbers).max(initial=0.0), np.abs(c.numbers).max(initial=0.0), 1e-9
+        )  # above 0, where all are 0
         if np.abs((a.numbers + c.numbers) / 2.0 - b.numbers).max(initial=0.0) > BEND * largest:
             return False
     return True

@@ -1,0 +1,187 @@
+"""Pictures from formulas."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .hashing import hash3, stream_of
+from .noises import (
+    ENDLESS,
+    gradient_noise,
+    lattice_density,
+    lattice_inside,
+    lattice_period,
+    lattice_place,
+    lattice_wrap,
+    simplex_noise,
+    value_noise,
+    white_noise,
+)
+from .pixels import Array, as_image, length, mix, smoothstep
+from .places import grid
+
+
+def constant(color: Array | tuple[float, ...], width: int, height: int) -> Array:
+    """One color everywhere."""
+    return np.broadcast_to(np.asarray(color, np.float64), (height, width, 4))
+
+
+def checker(
+    size: float, first: Array, second: Array, offset: tuple[float, float], width: int, height: int
+) -> tuple[Array, Array]:
+    """A checkerboard: the picture, and 0 or 1."""
+    square = np.floor((grid(width, height) - np.asarray(offset)) / np.maximum(size, 1e-3))
+    value = square.sum(axis=-1, keepdims=True) % 2.0
+    return np.where(value == 0.0, np.asarray(first), np.asarray(second)), value
+
+
+def ramp(
+    shape: str,
+    start: tuple[float, float],
+    end: tuple[float, float],
+    first: Array,
+    second: Array,
+    smoothness: float,
+    width: int,
+    height: int,
+) -> tuple[Array, Array]:
+    """A gradient along a line, outward from a point, or around a point like a clock hand: the picture, and 0..1."""
+    position = grid(width, height) - np.asarray(start) * (width, height)
+    axis = np.broadcast_to((np.asarray(end) - np.asarray(start)) * (width, height), position.shape)
+    if shape == "linear":
+        t = (position * axis).sum(axis=-1, keepdims=True) / np.maximum((axis * axis).sum(axis=-1, keepdims=True), 1e-12)
+    elif shape == "radial":
+        t = length(position) / np.maximum(length(axis), 1e-6)
+    else:
+        t = (np.arctan2(position[..., 1:], position[..., :1]) - np.arctan2(axis[..., 1:], axis[..., :1])) / (2 * np.pi)
+        t = t - np.floor(t)
+    t = np.clip(t, 0.0, 1.0)
+    value = mix(t, smoothstep(0.0, 1.0, t), smoothness)
+    return mix(np.asarray(first), np.asarray(second), value), value
+
+
+NOISES = {"gradient": gradient_noise, "value": value_noise, "white": white_noise, "simplex": simplex_noise}
+
+
+def noise_layers(
+    kind: str,
+    fractal: str,
+    place: Array,
+    tiles: Array,
+    octaves: int,
+    lacunarity: float,
+    gain: float,
+    contrast: float,
+    seed: int,
+) -> Array:
+    """Three independent noises in layers: fBm (Mandelbrot and van Ness 1968), ridged (Musgrave 1994), turbulence."""
+    folded = fractal in ("ridged", "turbulence")
+    total, carried, strength, density, whole = 0.0, 1.0, 1.0, 1.0, 0.0
+    for octave in range(octaves):
+        period = lattice_period(tiles, density, 6 if kind == "simplex" else 1)
+        p = place * lattice_density(tiles, density, period)
+        layer = NOISES[kind](p, stream_of(seed, octave, 0), period)
+        if folded:
+            layer = np.minimum(np.abs(layer * contrast), 1.0)
+        if fractal == "ridged":  # finer layers only on ridges of coarser ones
+            layer = (1.0 - layer) ** 2 * carried
+            carried = np.minimum(2.0 * layer, 1.0)
+        total = total + strength * layer
+        whole, strength, density = whole + strength, strength * gain, density * lacunarity
+    total = np.asarray(total / max(whole, 1e-6))
+    return total * 2.0 - 1.0 if folded else np.clip(total * contrast, -1.0, 1.0)
+
+
+def noise(
+    kind: str,
+    size: float,
+    octaves: int,
+    lacunarity: float,
+    gain: float,
+    contrast: float,
+    seed: int,
+    evolution: float,
+    fractal: str,
+    warp: float,
+    offset: tuple[float, float],
+    period: tuple[float, float],
+    loop: float,
+    width: int,
+    height: int,
+) -> tuple[Array, Array, Array]:
+    """Noise in layers: the picture, the same as a Field, and two more noises as a vector."""
+    size = np.maximum(size, 1e-3)
+    place = lattice_place(grid(width, height) - np.asarray(offset), size, period, evolution, loop)
+    tiles = np.array([period[0] / size, period[1] / size, loop])
+    if fractal == "warped":  # Quilez 2002: a noise moves the places where the noise is read
+        bend = noise_layers(kind, fractal, place, tiles, octaves, lacunarity, gain, 1.0, seed)
+        place = place + np.concatenate([warp * bend[..., 1:], np.zeros_like(bend[..., :1])], axis=-1)
+    total = noise_layers(kind, fractal, place, tiles, octaves, lacunarity, gain, contrast, seed)
+    value = 0.5 + 0.5 * total[..., :1]
+    return as_image(value), value, total[..., 1:]
+
+
+def worley(
+    feature: str,
+    metric: str,
+    size: float,
+    jitter: float,
+    seed: int,
+    evolution: float,
+    offset: tuple[float, float],
+    period: tuple[float, float],
+    loop: float,
+    width: int,
+    height: int,
+) -> tuple[Array, Array, Array]:
+    """Cells (Worley 1996): the distance from the nearest of scattered points, one in every cell of a cubic lattice."""
+    size = np.maximum(size, 1e-3)
+    tiles = np.array([period[0] / size, period[1] / size, loop])
+    cells = lattice_period(tiles, 1.0, 1)
+    p = lattice_place(grid(width, height) - np.asarray(offset), size, period, evolution, loop)
+    p = lattice_inside(p * lattice_density(tiles, 1.0, cells), cells)
+    middle = np.floor(p).astype(np.int64)
+    nearest, second, winner = np.full((height, width, 1), 1e9), np.full((height, width, 1), 1e9), middle
+    for i in range(27):
+        beside = np.array([i % 3, i // 3 % 3, i // 9]) - 1
+        point = 0.5 + jitter * (hash3(lattice_wrap(middle + beside, cells), stream_of(seed, 0, 1)) - 0.5)
+        away = np.abs(beside + point - (p - middle))
+        if metric == "manhattan":
+            far = away.sum(axis=-1, keepdims=True)
+        else:
+            far = away.max(axis=-1, keepdims=True) if metric == "chebyshev" else length(away)
+        winner = np.where(far < nearest, middle + beside, winner)
+        second = np.minimum(second, np.maximum(far, nearest))
+        nearest = np.minimum(nearest, far)
+    value = {"f1": nearest, "f2": second}.get(feature, second - nearest)
+    return as_image(value), value, hash3(lattice_wrap(winner, cells), stream_of(seed, 0, 2))
+
+
+def wave(
+    pattern: str,
+    profile: str,
+    wavelength: float,
+    angle: float,
+    phase: float,
+    center: tuple[float, float],
+    distortion: float,
+    size: float,
+    seed: int,
+    width: int,
+    height: int,
+) -> tuple[Array, Array]:
+    """Waves in straight bands or in rings: as sines, triangles, saws or squares."""
+    at = grid(width, height)
+    away = at - np.asarray(center) * (width, height)
+    along = away[..., :1] * np.cos(angle) + away[..., 1:] * np.sin(angle)
+    place = np.concatenate([at / np.maximum(size, 1e-3), np.zeros_like(at[..., :1])], axis=-1)
+    bend = distortion * simplex_noise(place, np.array([seed, 0, 0]), np.full(3, ENDLESS))[..., :1]
+    turn = (length(away) if pattern == "rings" else along) / np.maximum(wavelength, 1e-3) - phase + bend
+    t = turn - np.floor(turn)
+    value = {
+        "sine": 0.5 - 0.5 * np.cos(2.0 * np.pi * t),
+        "triangle": 1.0 - np.abs(2.0 * t - 1.0),
+        "saw": t,
+        "square": np.where(t < 0.5, 0.0, 1.0),
+    }[profile]
+    return as_image(value), value

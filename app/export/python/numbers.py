@@ -1,0 +1,67 @@
+"""Writes values of nodes as text of Python, in units that a reader knows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Any
+
+from halation.nodes import Node, read_reference, resolve_length_unit
+
+Plain = float | int | bool | str | tuple[Any, ...] | None
+
+DERIVED: Mapping[str, tuple[tuple[str, ...], str, Callable[[Any], tuple[float, ...]]]] = MappingProxyType(
+    {
+        "gradient_map": (("palette", "ramp"), "ramp", lambda node: node.resolve_ramp()),
+        "color_matrix": (("preset", "matrix", "direction"), "matrix", lambda node: node.resolve_matrix()),
+        "convolve3x3": (("preset", "kernel", "normalize", "scale"), "kernel", lambda node: node.weights()),
+    }
+)
+"""Values that decide one number of a function together: their names, that of the number, and what they make of it."""
+
+
+def list_settings(node: Node) -> dict[str, Plain]:
+    """What a function is given of a node, by parameter."""
+    settings: dict[str, Plain] = dict(node.settings)
+    if node.id in DERIVED:
+        names, name, derive = DERIVED[node.id]
+        settings = {other: setting for other, setting in settings.items() if other not in names}
+        settings[name] = derive(node)
+    return settings
+
+
+def find_unit(node: Node, name: str, reference_height: int | None) -> str | None:
+    """The unit of a number, such as px@1080; None for one that needs no conversion."""
+    value = node.values.get(name)
+    if value is None or value.unit is None:
+        return None
+    unit = dict(node.length_units).get(name) or resolve_length_unit(value.unit, reference_height)
+    return unit if unit in ("deg", "height") or read_reference(unit) else None
+
+
+def write_plain(value: Plain) -> str:
+    """A value as text, with the nine digits that a 32-bit float has."""
+    if isinstance(value, tuple):
+        parts = [write_plain(part) for part in value]
+        return f"({', '.join(parts)}{',' if len(parts) == 1 else ''})"
+    if isinstance(value, float):
+        short = repr(float(f"{value:.9g}"))
+        return short if "inf" not in short and "nan" not in short else f"float({short!r})"
+    if isinstance(value, str) and repr(value) == f"'{value}'":
+        return f'"{value}"'
+    return repr(value)
+
+
+def write_quantity(text: str, value: Plain, unit: str | None, height: str) -> str:
+    """Text of a number, with its conversion from a unit to pixels or radians. `text` may be a lookup in a table."""
+    if unit is None:
+        return text
+    if not value or (isinstance(value, tuple) and not any(value)):
+        return text
+    if unit == "deg":
+        return f"np.radians({text})"
+    reference = read_reference(unit)
+    factor = height if reference is None else f"{height} / {reference}"
+    if isinstance(value, tuple) and text == write_plain(value):
+        return f"({', '.join(f'{write_plain(part)} * {factor}' if part else '0.0' for part in value)})"
+    return f"np.multiply({text}, {factor})" if isinstance(value, tuple) else f"{text} * {factor}"

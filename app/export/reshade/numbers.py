@@ -1,0 +1,143 @@
+"""Writes how controls change the numbers of an effect, as code that draws them into a small picture once per frame."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..package.curves import Record
+
+Array = np.ndarray
+
+ROW = 256
+"""Cells in each row of the picture of numbers. A choice: 64 programs of four vectors take one row."""
+
+_FOUR = 4
+"""Numbers in each cell: the channels of a pixel."""
+
+
+@dataclass
+class NumberPicture:
+    """The slots that controls change, as cells of four numbers, and the code that computes them."""
+
+    slots: Sequence[Record]
+    knobs: Mapping[str, str]
+    """The expression of each knob; knobs that are not here keep the value of the graph."""
+    code: list[str] = field(default_factory=list[str])
+    count: int = 0
+    """Cells so far."""
+    _first_cells: dict[tuple[int, int], int] = field(default_factory=dict[tuple[int, int], int])
+
+    def changes(self, slot: int) -> bool:
+        """Whether a control changes the numbers of a slot."""
+        return any(curve["knob"] in self.knobs for curve in self.slots[slot].get("curves", ()))
+
+    def find_numbers(self, slot: int) -> Array:
+        """The numbers of a slot at the settings of the graph, rounded where they are whole."""
+        record = self.slots[slot]
+        numbers = np.array(record["base"], np.float64)
+        return np.rint(numbers) if record.get("whole") else numbers
+
+    def add_slot(self, slot: int, width: int) -> int:
+        """The first cell of a slot; each cell has `width` of its numbers."""
+        key = slot, width
+        if key not in self._first_cells:
+            first, numbers = self.count, len(self.slots[slot]["base"])
+            self._first_cells[key] = first
+            for at in range(0, numbers, width):
+                self._write_cell(slot, at, width)
+        return self._first_cells[key]
+
+    def write(self) -> list[str]:
+        """The texture, the function that reads a cell, and the pass that draws it; nothing if no control does."""
+        if not self.count:
+            return []
+        rows = -(-self.count // ROW)
+        head = [
+            f"texture2D Numbers {{ Width = {ROW}; Height = {rows}; Format = RGBA32F; }};",
+            "sampler2D NumbersSampler { Texture = Numbers; MinFilter = POINT; MagFilter = POINT; MipFilter = POINT; };",
+            f"float4 number(int cell) {{ return FETCH(NumbersSampler, cell % {ROW}, cell / {ROW}); }}",
+        ]
+        choices = [f"    if (cell == {cell}) {{ return cell_{cell}(); }}" for cell in range(self.count)]
+        return [
+            *head,
+            *self.code,
+            "float4 draw_numbers(float4 position : SV_Position) : SV_Target {",
+            f"    int cell = int(position.y) * {ROW} + int(position.x);",
+            *choices,
+            "    return float4(0.0, 0.0, 0.0, 0.0);",
+            "}",
+        ]
+
+    def _write_cell(self, slot: int, at: int, width: int) -> None:
+        record = self.slots[slot]
+
+        def take(row: Any) -> Array:
+            part = np.asarray(row, np.float64)[at : at + width]
+            return np.pad(part, (0, _FOUR - len(part)))
+
+        base = take(record["base"])
+        lines = [f"    float4 base = {write_four(base)}, sum = base;"]
+        is_product = record.get("mode") == "multiply"
+        for curve in record.get("curves", ()):
+            if curve["knob"] not in self.knobs:
+                continue
+            rows = np.array([take(row) for row in curve["values"]])
+            if np.abs(rows - base).max() > 0.0:
+                row = self._write_curve(curve, rows)
+                if is_product:  # where the base is 0 there is no ratio, and the number is added
+                    zeros = write_four((base == 0.0).astype(np.float64))
+                    lines.append(f"    {{ float4 row = {row}; sum = sum * relative(row, base) + row * {zeros}; }}")
+                else:
+                    lines.append(f"    sum += {row} - base;")
+        for grid in record.get("grids", ()):
+            if all(knob in self.knobs for knob in grid["knobs"]):
+                lines += self._write_grid(grid, take)
+        lines.append("    return floor(sum + 0.5);" if record.get("whole") else "    return sum;")
+        self.code += [f"float4 cell_{self.count}() {{", *lines, "}"]
+        self.count += 1
+
+    def _write_curve(self, curve: Record, rows: Array) -> str:
+        """The row at the value of a knob: the first row, and the part of each step behind it; or the nearest row."""
+        places, x = curve["at"], self.knobs[curve["knob"]]
+        if curve.get("snap"):
+            text = write_four(rows[-1])
+            for at in range(len(places) - 2, -1, -1):
+                middle = (places[at] + places[at + 1]) / 2.0
+                text = f"({x} <= {write_float(middle)} ? {write_four(rows[at])} : {text})"
+            return text
+        steps = [
+            f" + part({x}, {write_float(low)}, {write_float(high)}) * {write_four((after - before) / (high - low))}"
+            for (low, high), (before, after) in zip(itertools.pairwise(places), itertools.pairwise(rows), strict=True)
+            if np.abs(after - before).max() > 0.0
+        ]
+        return f"({write_four(rows[0])}{''.join(steps)})"
+
+    def _write_grid(self, grid: Record, take: Any) -> list[str]:
+        """Lines that add the number between four places: polygons along the second knob, joined along the first one."""
+        (xs, ys), (first, second) = grid["at"], grid["knobs"]
+        rows = [np.array([take(row) for row in line]) for line in grid["values"]]
+        if max(np.abs(line).max() for line in rows) == 0.0:
+            return []
+        curves = [self._write_curve({"at": ys, "knob": second}, line) for line in rows]
+        x = self.knobs[first]
+        lines = [f"    {{ float4 here = {curves[0]};"]
+        for (low, high), curve in zip(itertools.pairwise(xs), curves[1:], strict=True):
+            share = f"part({x}, {write_float(low)}, {write_float(high)}) / {write_float(high - low)}"
+            lines.append(f"    here = lerp(here, {curve}, {share});")
+        return [*lines, "    sum += here; }"]
+
+
+def write_float(number: float) -> str:
+    """A number as ReShade FX writes it, with the digits of 32 bits."""
+    text = f"{np.float32(number):.9g}"
+    return text if any(letter in text for letter in ".en") else f"{text}.0"
+
+
+def write_four(numbers: Array) -> str:
+    """Four numbers as a vector."""
+    return f"float4({', '.join(map(write_float, numbers))})"

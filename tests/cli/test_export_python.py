@@ -1,0 +1,283 @@
+"""halation export --to python: scripts that a Python without Halation runs, against the renderer."""
+
+from __future__ import annotations
+
+import ast
+import json
+import re
+import subprocess
+import sys
+import zlib
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+from exr_files import read
+from halation import document
+from halation.errors import GraphError
+from halation.export import ExportOrder
+from halation.export.python.library import load_library
+from halation.export.python.script import export_script
+from halation.graph import OUTPUTS, Port
+from halation.nodes import Node, catalogue
+from halation.presets import paths
+from halation.renderer import Renderer, RenderRequest, open_device
+from halation.resources.sandbox import UNRESTRICTED
+from numpy_scripts import (
+    choose_values,
+    export_output,
+    list_nodes,
+    load_graph,
+    make_graph,
+    render_outputs,
+    run_scripts,
+    write_pictures,
+)
+from selection import list_cases
+
+PAGE = Path(__file__).parents[2] / "docs" / "export.md"
+
+DAILY, NIGHTLY = (0, 3), (1, 2)
+"""Which values of each node are tried: 0 its defaults, others at random, 3 with all inputs linked."""
+
+STEPS = {"halftone": 0.005, "distance_field": 0.005}
+"""Nodes that decide by thresholds or between equally near places: the part of pixels that rounding decides."""
+
+OFTEN = ["agx_look", "crt_television", "glitch_art", "neon_edges", "risograph", "soft_bloom", "watercolor"]
+SELDOM = ["bleach_bypass", "burning_page", "cinematic_grade", "comic_ink", "cyanotype", "film_halation", "fluted_glass",
+          "golden_autumn", "heartbeat", "light_shafts", "mandala", "miniature", "night_street", "oil_painting",
+          "pencil_sketch", "rain_on_glass", "silver_print", "spotlight", "technicolor", "vintage_photo",
+          "zoom_burst"]  # fmt: skip
+"""Presets that are compared by day and by night; more of them can be exported."""
+
+
+@pytest.fixture(scope="module")
+def renderer():
+    return Renderer(open_device(sandbox=UNRESTRICTED), sandbox=UNRESTRICTED)
+
+
+def measure(ours: np.ndarray, theirs: np.ndarray) -> np.ndarray:
+    """Differences, relative for light above 1."""
+    theirs = np.broadcast_to(theirs, ours.shape)
+    return np.abs(theirs - ours) / np.maximum(1.0, np.abs(ours))
+
+
+@pytest.mark.parametrize("turns", list_cases([DAILY], [(NIGHTLY,)]), ids=str)
+@pytest.mark.parametrize("id", list_nodes())
+def test_a_function_does_what_its_node_does(renderer, tmp_path: Path, id: str, turns: tuple[int, ...]) -> None:
+    """All outputs, at the defaults and at values at random, within 1e-3 of the renderer with 32 bits."""
+    node = catalogue()[id]
+    file = write_pictures(tmp_path)
+    known = {parameter.name: parameter for parameter in load_library().definitions[id].parameters}
+    pairs, pictures = [], []
+    for turn in turns:
+        random = np.random.default_rng((turn, zlib.crc32(id.encode())))
+        values = choose_values(node, random) if turn else {}
+        values |= {"pattern": "bayer"} if id == "dither" and not turn else {}
+        optional = [name for name, socket in node.inputs.items() if socket.optional]
+        linked = [name for name in optional if turn == DAILY[-1] and (name in known or node.has_mask)]
+        graph = load_graph(tmp_path / f"{turn}.json", make_graph(file, node, values, tuple(linked)))
+        for name, ours in render_outputs(graph, renderer, list(node.outputs)).items():
+            script = tmp_path / f"{turn}_{name}.py"
+            export_output(graph, name, script)
+            pairs.append((script, script.with_suffix(".npy")))
+            pictures.append(ours)
+    run_scripts(pairs)
+    for ours, (script, made) in zip(pictures, pairs, strict=True):
+        errors = measure(ours, np.load(made))
+        assert (errors > 1e-3).mean() <= STEPS.get(id, 0.0), f"{script.name}: {errors.max()}"
+
+
+@pytest.mark.parametrize("name", list_cases(OFTEN, SELDOM))
+def test_a_script_makes_the_picture_of_a_preset(renderer, tmp_path: Path, name: str) -> None:
+    path = next(path for path in paths() if path.stem == name)
+    graph = document.load(path, sandbox=UNRESTRICTED)
+    script, made = tmp_path / f"{name}.py", tmp_path / "made.npy"
+    port, size = Port(OUTPUTS, next(iter(graph.outputs))), (97, 55)
+    frame = (graph.settings.frames or (1, 1))[0]
+    export_script(ExportOrder(graph, name, port, UNRESTRICTED, lambda: renderer, script, size=size))
+    run_scripts([(script, made)])
+    request = RenderRequest({}, {"image": port}, size, frame=frame, precision="float")
+    errors = measure(renderer.render(graph, request)["image"], np.load(made))
+    share = max(STEPS.get(item.id, 0.0) for item in graph.nodes.values() if isinstance(item, Node))
+    assert (errors > 1e-3).mean() <= share, errors.max()
+
+
+@pytest.mark.nightly
+def test_how_much_can_be_exported() -> None:
+    """The figures of docs/export.md."""
+    exported = []
+    for path in paths():
+        graph = document.load(path, sandbox=UNRESTRICTED)
+        port = Port(OUTPUTS, next(iter(graph.outputs)))
+        try:
+            text = export_script(ExportOrder(graph, path.stem, port, UNRESTRICTED, lambda: None)).text  # pyright: ignore
+        except GraphError as fault:
+            assert "node '" in str(fault)
+            continue
+        compile(text, path.stem, "exec")
+        exported.append(path.stem)
+    assert {*OFTEN, *SELDOM} <= {*exported}
+    said = re.search(r"functions for (\d+) nodes; (\d+) of (\d+) presets", PAGE.read_text())
+    assert said and [int(part) for part in said.groups()] == [len(list_nodes()), len(exported), len(paths())]
+
+
+LOOK = {
+    "nodes": {
+        "glow": {"type": "bloom", "values": {"radius": 0.1}},
+        "tone": {"type": "tone_map", "values": {"operator": "hable"}},
+        "soft": {"type": "gaussian_blur", "values": {"sigma": 2.0}},
+        "both": {"type": "mix_images", "values": {"factor": 0.3}},
+    },
+    "links": {
+        "glow.image": "light.out",
+        "soft.image": "glow.out",
+        "both.a": "glow.out",
+        "both.b": "soft.out",
+        "tone.image": "both.out",
+        "outputs.image": "tone.out",
+    },
+}
+
+
+@pytest.fixture
+def script(cli, graphs, tmp_path: Path) -> Path:
+    result = cli("export", graphs(**LOOK), "-o", tmp_path / "look.py")
+    assert result.code == 0, result.err
+    return tmp_path / "look.py"
+
+
+def run(script: Path, *words: object) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, script, *map(str, words)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=100, check=False)
+
+
+def test_a_script_reads_and_writes_files(cli, graphs, script: Path, tmp_path: Path) -> None:
+    """An EXR has light, a PNG has sRGB codes, and another picture is fitted to the size."""
+    graph = graphs(**LOOK)
+    assert cli("render", graph, "-o", tmp_path / "ours.exr", "--precision", "float").code == 0
+    assert run(script, "-o", tmp_path / "theirs.exr").returncode == 0
+    np.testing.assert_allclose(read(tmp_path / "theirs.exr"), read(tmp_path / "ours.exr"), atol=2e-5)
+    words = ("--view", "none", "--dither", "none")
+    assert cli("render", graph, "-o", tmp_path / "ours.png", *words).code == 0
+    assert run(script, "-o", tmp_path / "theirs.png").returncode == 0
+    codes = [oiio.ImageBuf(str(tmp_path / name)).get_pixels(oiio.FLOAT) for name in ("ours.png", "theirs.png")]
+    assert np.abs(codes[0][..., :3] - codes[1][..., :3]).max() <= 1.01 / 255
+    assert run(script, "-o", tmp_path / "again.npy", "-i", f"beauty={tmp_path / 'ours.png'}").returncode == 0
+    assert cli("render", graph, "-o", tmp_path / "again.exr", "-i", f"beauty={tmp_path / 'ours.png'}",
+               "--precision", "float").code == 0  # fmt: skip
+    np.testing.assert_allclose(np.load(tmp_path / "again.npy"), read(tmp_path / "again.exr"), atol=2e-5)
+    result = run(script, "-i", "nobody=a.exr")
+    assert result.returncode == 1 and "choose one of beauty" in result.stderr and "Traceback" not in result.stderr
+
+
+def test_a_script_has_what_it_needs_and_no_more(script: Path) -> None:
+    """Functions in an order that Python takes, each used, and no branch for another choice."""
+    text = script.read_text()
+    tree = ast.parse(text)
+    defined = [node.name for node in tree.body if isinstance(node, ast.FunctionDef)]
+    used = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)}
+    assert {*defined} - used == set() and "hable" in defined
+    assert not {"agx", "aces", "tone_luminance", "shrink_steadily", "bright_pass"} & {*defined}
+    assert all(ast.get_docstring(node) for node in tree.body if isinstance(node, ast.FunctionDef))
+    assert (
+        "tone = tone_map(" in text and "radius=0.1 * HEIGHT" in text and "halation" not in text.replace("Halation", "")
+    )
+    checked = subprocess.run(
+        [sys.executable, "-m", "ruff", "check", "--isolated", "--select", "F,E9", script],
+        capture_output=True,
+        text=True,
+    )
+    assert checked.returncode == 0, checked.stdout
+
+
+def test_animated_values_are_tables(cli, graphs, tmp_path: Path) -> None:
+    """An expression, frame by frame."""
+    moving = {"light.stops": {"expression": "2 * sin(frame)"}}
+    graph = graphs(animation=moving, settings={"frames": [1, 6]})
+    assert cli("export", graph, "--frame", 2, "-o", tmp_path / "look.py").code == 0
+    for words, frame in (((), 2), (("--frame", 5), 5)):
+        assert run(tmp_path / "look.py", "-o", tmp_path / "theirs.npy", *words).returncode == 0
+        out = tmp_path / f"{frame}.exr"
+        assert cli("render", graph, "-o", out, "--frame", frame, "--precision", "float").code == 0
+        np.testing.assert_allclose(np.load(tmp_path / "theirs.npy"), read(out), atol=1e-5)
+
+
+def test_links_to_values_masks_groups_and_sizes(cli, graphs, tmp_path: Path) -> None:
+    """A Field as a value, a Field through a blur, a mask, a muted node, and a picture of another size."""
+    nodes = {
+        "ramp": {"type": "ramp"},
+        "soft": {"type": "gaussian_blur", "values": {"sigma": 3.0}},
+        "half": {"type": "resize", "values": {"scale": [0.5, 0.5]}},
+        "off": {"type": "invert", "muted": True},
+        "gray": {"type": "saturation", "values": {"saturation": 0.0, "mix": 0.7, "invert_mask": True}},
+        "sum": {"type": "merge", "values": {"mode": "screen"}},
+    }
+    links = {
+        "soft.image": "ramp.value",
+        "light.stops": "soft.out",
+        "half.image": "light.out",
+        "off.image": "light.out",
+        "gray.image": "off.out",
+        "gray.mask": "ramp.value",
+        "sum.a": "half.out",
+        "sum.b": "gray.out",
+        "outputs.image": "sum.out",
+    }
+    graph = graphs(nodes=nodes, links=links)
+    assert cli("export", graph, "-o", tmp_path / "look.py").code == 0
+    text = (tmp_path / "look.py").read_text()
+    assert "fit(half, WIDTH, HEIGHT)" in text and "masked(" in text and "invert(" not in text
+    assert run(tmp_path / "look.py", "-o", tmp_path / "theirs.npy").returncode == 0
+    assert cli("render", graph, "-o", tmp_path / "a.exr", "--precision", "float").code == 0
+    np.testing.assert_allclose(np.load(tmp_path / "theirs.npy"), read(tmp_path / "a.exr"), atol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("parts", "said"),
+    [
+        ({"nodes": {"odd": {"type": "depth_of_field"}}}, "node 'odd': there is no numpy text for 'depth_of_field'"),
+        ({"nodes": {"odd": {"type": "feedback"}}}, "node 'odd': it reads other frames"),
+        ({"nodes": {"odd": {"type": "dither"}}}, "does not know 'pattern': 'blue noise'"),
+        ({"nodes": {"odd": {"type": "gaussian_blur", "values": {"edge": "panorama"}}}}, "'edge': 'panorama'"),
+        ({"nodes": {"odd": {"type": "invert"}}, "settings": {"color": {"working": "ACEScg"}}}, "working space"),
+        ({"nodes": {"odd": {"type": "invert"}}, "settings": {"overscan": 0.1}}, "overscan"),
+    ],
+)
+def test_refusals_name_the_node_and_the_reason(cli, graphs, tmp_path: Path, parts, said: str) -> None:
+    links = {"odd.image": "light.out", "outputs.image": "odd.out"}
+    if parts["nodes"]["odd"]["type"] == "depth_of_field":
+        links["odd.depth"] = "depth.out"
+        parts["nodes"]["depth"] = {"type": "luminance"}
+        links["depth.image"] = "light.out"
+    result = cli("export", graphs(**parts, links=links), "-o", tmp_path / "no.py")
+    assert result.code == 3 and said in result.err and "Traceback" not in result.err
+    assert not (tmp_path / "no.py").exists()
+
+
+def test_two_transforms_that_work_as_one_are_refused(cli, graphs, tmp_path: Path) -> None:
+    nodes = {name: {"type": "transform", "values": {"rotation": 10.0}} for name in ("first", "second")}
+    links = {"first.image": "light.out", "second.image": "first.out", "outputs.image": "second.out"}
+    result = cli("export", graphs(nodes=nodes, links=links), "-o", tmp_path / "no.py")
+    assert result.code == 3 and "node 'second': it joins with the transform 'first'" in result.err
+
+
+def test_names_of_a_graph_are_no_code(cli, tmp_path: Path) -> None:
+    """Ids, descriptions and names of files become names and texts of Python, whatever they are."""
+    name = "class"
+    tree = {
+        "halation": 1,
+        "settings": {"size": [8, 8]},
+        "outputs": {"image": {"type": "Image"}},
+        "nodes": {name: {"type": "checker"}, "np": {"type": "exposure", "values": {"stops": 1.0}}},
+        "links": {"np.image": f"{name}.out", "outputs.image": "np.out"},
+        "ui": {"about": {"doc": 'It ends """ here\\ \nimport os'}},
+    }
+    path = tmp_path / 'it\'s "odd".json'
+    path.write_text(json.dumps(tree))
+    assert cli("export", path, "--to", "python", "-o", tmp_path / "odd.py").code == 0
+    assert run(tmp_path / "odd.py", "-o", tmp_path / "odd.npy").returncode == 0
+    assert np.load(tmp_path / "odd.npy").shape == (8, 8, 4)
+    assert not [node for node in ast.walk(ast.parse((tmp_path / "odd.py").read_text()))
+                if isinstance(node, ast.Import) and node.names[0].name == "os"]  # fmt: skip

@@ -1,0 +1,150 @@
+"""Graphs of one node with values at random, as scripts of numpy, and what a plain Python makes of these."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from exr_files import write_exr
+from halation import document
+from halation.export import ExportOrder
+from halation.export.python.library import load_library
+from halation.export.python.script import export_script
+from halation.graph import Graph, Port
+from halation.nodes import Kind, Node, Value, catalogue
+from halation.renderer import Renderer, RenderRequest
+from halation.resources.sandbox import UNRESTRICTED
+
+WIDTH, HEIGHT = 37, 29
+PLAIN_PYTHON = """
+import runpy, sys
+
+class NoHalation:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] not in sys.stdlib_module_names | {"numpy", "scipy", "OpenImageIO"}:
+            if name.partition(".")[0] in ("halation", "moderngl", "msgspec", "cv2", "glfw"):
+                raise ImportError(f"{name}: a script may import numpy, scipy and OpenImageIO only")
+
+sys.meta_path.insert(0, NoHalation())
+for script, out in zip(sys.argv[1::2], sys.argv[2::2]):
+    sys.argv = [script, "-o", out]
+    runpy.run_path(script, run_name="__main__")
+"""
+"""A Python in which Halation and what it stands on cannot be imported. It runs pairs of scripts and outputs."""
+
+
+def list_nodes() -> list[str]:
+    """The nodes that have a function."""
+    library = load_library()
+    return [id for id in catalogue() if library.find_function(id)]
+
+
+def write_pictures(folder: Path) -> Path:
+    """Light from -0.1 to 5 with holes, half-covered pixels and glows; and fields and vectors; in one file."""
+    random = np.random.default_rng(5)
+    y, x = np.mgrid[:HEIGHT, :WIDTH]
+    layers: dict[str, np.ndarray] = {}
+    for number in range(3):
+        color = 0.5 + 0.5 * np.sin(x[..., None] * 0.3 + y[..., None] * (0.2 + 0.1 * number) + np.arange(3) * 1.7)
+        color = color + 0.3 * random.random((HEIGHT, WIDTH, 3)) - 0.05
+        color[random.random((HEIGHT, WIDTH)) > 0.97] *= 5.0
+        alpha = np.where(x + 3 * number < 9, 0.0, np.where(y < 8, 0.25 + 0.5 * random.random((HEIGHT, WIDTH)), 1.0))
+        glow = np.where((alpha == 0.0) & (y > 20), 0.3, alpha)
+        layers[f"Image{number}"] = np.concatenate([color * glow[..., None], alpha[..., None]], axis=-1)
+        layers[f"Field{number}"] = np.clip(0.6 + 0.6 * np.cos(x * 0.35 + number) * np.sin(y * 0.3), 0.0, 1.0)[..., None]
+        vector = random.standard_normal((HEIGHT, WIDTH, 3))
+        layers[f"Vector{number}"] = vector / np.linalg.norm(vector, axis=-1, keepdims=True)
+    pixels = {name: layer.astype(np.float32) for name, layer in layers.items()}
+    return write_exr(folder / "pictures.exr", pixels, dict.fromkeys(pixels, "float"))
+
+
+def make_graph(file: Path, node: type[Node], values: dict[str, Any], linked: tuple[str, ...] = ()) -> dict[str, Any]:
+    """A graph of one node whose inputs, but for optional ones that are not named, read layers of a file."""
+    inputs: dict[str, Any] = {}
+    links: dict[str, str] = {}
+    for number, (name, socket) in enumerate(node.inputs.items()):
+        if socket.optional and name not in linked:
+            continue
+        kind = {Kind.IMAGE: "Image", Kind.FIELD: "Field", Kind.VECTOR: "Vector"}[socket.kind]
+        inputs[name] = {"type": kind, "file": file.name, "layer": f"{kind}{number % 3}"}
+        if kind == "Vector" and socket.channels != 3:
+            layer = "Image" if socket.channels == 4 else "Vector"
+            inputs[name] |= {"type": f"Vector{socket.channels}", "layer": f"{layer}{number % 3}"}
+        links[f"it.{name}"] = f"inputs.{name}"
+    return {
+        "halation": 1,
+        "settings": {"size": [WIDTH, HEIGHT]},
+        "inputs": inputs,
+        "outputs": {},
+        "nodes": {"it": {"type": node.id, "values": values}},
+        "links": links,
+    }
+
+
+def choose_values(node: type[Node], random: np.random.Generator) -> dict[str, Any]:
+    """Values at random in their soft ranges, as a graph file holds them; lengths are small, as the picture is."""
+    function = load_library().definitions[node.id]
+    known = {parameter.name: parameter for parameter in function.parameters}
+    chosen: dict[str, Any] = {}
+    for name, value in node.values.items():
+        if name in known and known[name].choices:
+            chosen[name] = known[name].choices[random.integers(len(known[name].choices))]
+        elif name in known or (value.type == "choice" and name in ("palette", "preset", "direction", "normalize")):
+            chosen[name] = choose_value(value, random)
+    return {name: value for name, value in chosen.items() if value is not None}
+
+
+def choose_value(value: Value, random: np.random.Generator) -> Any:
+    """One value at random."""
+    low = max(value.low, -4.0)
+    high = max(min(value.high, 12.0), min(low * 4.0, value.high))
+    if value.unit in ("deg", "K"):
+        low, high = value.low, value.high
+    match value.type:
+        case "float":
+            return float(random.uniform(low, high))
+        case "int":
+            return int(random.integers(int(low), int(high) + 1))
+        case "bool":
+            return bool(random.random() < 0.5)
+        case "choice":
+            return str(random.choice(value.choices))
+        case "color":
+            return [*random.uniform(0.05, 1.2, 3).tolist(), 1.0]
+        case "vector":
+            return random.uniform(max(low, -2.0), min(high, 8.0), value.length).tolist()
+        case "curve":
+            ends = max(value.low, 0.0), min(value.high, 1.0)
+            return [part for x in (0.0, 0.3, 0.7, 1.0) for part in (x, float(random.uniform(*ends)))]
+        case _:
+            return None
+
+
+def render_outputs(graph: Graph, renderer: Renderer, names: list[str]) -> dict[str, np.ndarray]:
+    """What the renderer makes of the outputs of the node, with 32 bits."""
+    targets = {name: Port("it", name) for name in names}
+    return renderer.render(graph, RenderRequest({}, targets, precision="float"))
+
+
+def export_output(graph: Graph, name: str, path: Path) -> str:
+    """Export an output of the node as a script, and return its text."""
+    order = ExportOrder(graph, path.stem, Port("it", name), UNRESTRICTED, lambda: None, path)  # pyright: ignore
+    export_script(order)
+    return path.read_text("utf-8")
+
+
+def run_scripts(pairs: list[tuple[Path, Path]]) -> None:
+    """Run scripts in a process of a plain Python."""
+    words = [str(path) for pair in pairs for path in pair]
+    subprocess.run([sys.executable, "-c", PLAIN_PYTHON, *words], check=True, timeout=600)
+
+
+def load_graph(path: Path, tree: dict[str, Any]) -> Graph:
+    """A graph of a tree, saved beside its pictures."""
+    import json
+
+    path.write_text(json.dumps(tree))
+    return document.load(path, sandbox=UNRESTRICTED)
