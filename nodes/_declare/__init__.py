@@ -68,6 +68,16 @@ from .lights import (
 from .masking import INVERT_MASK, MASK, MASKED, MIX
 from .mattes import float_bits, format_names, matte_of, murmur3, pick_ids, pick_names, toggle_name
 from .node import Filter, Node, Pointwise, Reader, Source, Temporal
+from .paint_strokes import (
+    MAX_STROKES,
+    PAINT_STROKES,
+    PaintStroke,
+    PaintStrokeSet,
+    PaintTool,
+    name_paint_strokes,
+    paint_strokes_of,
+    simplify_stroke,
+)
 from .recolor import WORKING_SPACE, ColorChange, ColorSettings, LookupFile, SpaceChange
 from .render import Matte, Meaning, Render
 from .roto_shapes import (
@@ -80,13 +90,11 @@ from .roto_shapes import (
     name_roto_shapes,
     roto_shapes_of,
 )
+from .rows import ROWS, SPLINE_ROWS, STROKE_ROWS, Row, RowLayout
 from .scene import BuiltInScene, Motion, Scene, SceneFile, StageName
 from .sockets import CameraSocket, Color, Edge, Field, Image, Number, OutputSocket, Size, Socket, Vector, glsl_type
 from .splines import (
-    MAX_SPLINE_POINTS,
-    POINT_LENGTH,
     CubicCurve,
-    Row,
     curve_point,
     insert_point,
     join_points,
@@ -129,6 +137,8 @@ from .values import (
     Spline,
     SplinePoints,
     Stops,
+    Stroke,
+    StrokePoints,
     Swatch,
     TablePath,
     Uniform,
@@ -147,13 +157,16 @@ __all__ = [
     "MAX_POINTS",
     "MAX_REFERENCE_HEIGHT",
     "MAX_ROTO_SHAPES",
-    "MAX_SPLINE_POINTS",
+    "MAX_STROKES",
     "MAX_TEXT",
     "MIX",
-    "POINT_LENGTH",
+    "PAINT_STROKES",
     "REFERENCE_HEIGHT",
     "RGBA",
     "ROTO_SHAPES",
+    "ROWS",
+    "SPLINE_ROWS",
+    "STROKE_ROWS",
     "WORKING_SPACE",
     "Affine",
     "Argument",
@@ -211,6 +224,9 @@ __all__ = [
     "OfSpace",
     "OutputSocket",
     "Overlap",
+    "PaintStroke",
+    "PaintStrokeSet",
+    "PaintTool",
     "PatternLoop",
     "PatternOffset",
     "PatternPeriod",
@@ -231,6 +247,7 @@ __all__ = [
     "RotoShape",
     "RotoShapeSet",
     "Row",
+    "RowLayout",
     "Scalar",
     "Scene",
     "SceneFile",
@@ -247,6 +264,8 @@ __all__ = [
     "SplinePoints",
     "StageName",
     "Stops",
+    "Stroke",
+    "StrokePoints",
     "Swatch",
     "TablePath",
     "Temporal",
@@ -286,11 +305,13 @@ __all__ = [
     "name_curve_pairs",
     "name_light_groups",
     "name_lights",
+    "name_paint_strokes",
     "name_reference",
     "name_roto_shapes",
     "natural_order",
     "number_lights",
     "orbit_camera",
+    "paint_strokes_of",
     "pick_ids",
     "pick_names",
     "ramp_at",
@@ -299,6 +320,7 @@ __all__ = [
     "read_rows",
     "resolve_length_unit",
     "roto_shapes_of",
+    "simplify_stroke",
     "space_pixels",
     "split_curve",
     "split_points",

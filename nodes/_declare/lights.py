@@ -15,6 +15,13 @@ from .values import Doc, ItemKind, Items, Slider, Swatch, Value, read_value
 Triple = tuple[float, float, float]
 
 MAX_LIGHTS = 1024
+"""Lights of a node. Chosen by judgement: tiles leave out those that cannot reach a pixel, but each is looked at."""
+
+MAX_COOKIES = 4
+"""Pictures through which lights of a node can fall: as many as it has inputs for."""
+
+_UPRIGHT = 1e-6
+"""Below this horizontal part, a direction counts as straight up or down, where no side is level by itself."""
 
 _OLD_NUMBERS = 16
 """The numbers of a light in files of the first version."""
@@ -123,6 +130,21 @@ class Light(Struct, frozen=True):
             doc="Lights only what is in this matte, 1 to 4; below 0 only what is outside of it. 0: everything.",
         ),
     ] = 0
+    cookie: Annotated[
+        int,
+        Slider(
+            0,
+            MAX_COOKIES,
+            unit="count",
+            minimum=0,
+            maximum=MAX_COOKIES,
+            doc="The picture through which the light falls, 1 to 4; 0: none.",
+        ),
+    ] = 0
+    cookie_width: Annotated[
+        float,
+        Slider(0.0, 10.0, unit="scene", minimum=1e-6, doc="How wide the picture lies across the light. It repeats."),
+    ] = 4.0
 
     @property
     def gain(self) -> float:
@@ -137,18 +159,26 @@ class Light(Struct, frozen=True):
         return (x / size, y / size, z / size) if size > 0.0 else (0.0, 0.0, -1.0)
 
     @property
+    def sides(self) -> tuple[Triple, Triple]:
+        """Two directions of length 1 across the light, turned by `roll`: level and to the left for what looks along
+        with the light, and upward."""
+        x, y, z = self.aim
+        level = math.hypot(x, y)
+        side = (-y / level, x / level, 0.0) if level > _UPRIGHT else (1.0, 0.0, 0.0)
+        up = (y * side[2] - z * side[1], z * side[0] - x * side[2], x * side[1] - y * side[0])
+        cosine, sine = math.cos(self.roll), math.sin(self.roll)
+        return (
+            cast("Triple", tuple(cosine * first + sine * second for first, second in zip(side, up, strict=True))),
+            cast("Triple", tuple(cosine * second - sine * first for first, second in zip(side, up, strict=True))),
+        )
+
+    @property
     def half_axes(self) -> tuple[Triple, Triple]:
         """From the middle to an edge, both ways across: half the width and the height of a rectangle, radii of a disc;
         half the length and the radius of a tube."""
-        x, y, z = self.aim
-        level = math.hypot(x, y)
-        side = (-y / level, x / level, 0.0) if level > 1e-6 else (1.0, 0.0, 0.0)
-        up = (y * side[2] - z * side[1], z * side[0] - x * side[2], x * side[1] - y * side[0])
+        along, across = self.sides
         if self.kind is LightKind.TUBE:
-            return _scale((x, y, z), self.length / 2.0), _scale(side, self.size)
-        cosine, sine = math.cos(self.roll), math.sin(self.roll)
-        along = tuple(cosine * first + sine * second for first, second in zip(side, up, strict=True))
-        across = tuple(cosine * second - sine * first for first, second in zip(side, up, strict=True))
+            return _scale(self.aim, self.length / 2.0), _scale(along, self.size)
         sizes = (self.size, self.size) if self.kind is LightKind.DISC else (self.width / 2.0, self.height / 2.0)
         return _scale(along, sizes[0]), _scale(across, sizes[1])
 
@@ -166,16 +196,16 @@ _THINNEST = 1e-4
 _ORDER = (
     "on", "solo", "color", "temperature", "intensity", "exposure",
     "place", "direction", "roll", "width", "height", "length", "size", "inner", "outer", "angle", "reach", "shadow",
-    "matte",
+    "matte", "cookie", "cookie_width",
 )  # fmt: skip
 """The fields in the order of the editor."""
 
 _LOCAL = ("place", "reach")
 _FIELDS: Mapping[LightKind, tuple[str, ...]] = {
-    LightKind.POINT: _LOCAL,
-    LightKind.SPOT: (*_LOCAL, "direction", "inner", "outer"),
-    LightKind.SUN: ("direction", "angle"),
-    LightKind.SPHERE: (*_LOCAL, "size"),
+    LightKind.POINT: (*_LOCAL, "cookie"),
+    LightKind.SPOT: (*_LOCAL, "direction", "inner", "outer", "roll", "cookie"),
+    LightKind.SUN: ("direction", "angle", "roll", "cookie", "cookie_width"),
+    LightKind.SPHERE: (*_LOCAL, "size", "cookie"),
     LightKind.RECTANGLE: (*_LOCAL, "direction", "roll", "width", "height"),
     LightKind.DISC: (*_LOCAL, "direction", "size"),
     LightKind.TUBE: (*_LOCAL, "direction", "length", "size"),
@@ -190,8 +220,10 @@ _DOCS = {
     LightKind.DISC: "Shines from one side of a disc.",
     LightKind.TUBE: "Shines from the surface of a tube with closed ends.",
 }
+_COOKIE_ROLL = "Turns the cookie clockwise, seen along with the light. At 0 it stands upright."
 _DIFFERENCES: Mapping[LightKind, Mapping[str, Mapping[str, Any]]] = {
-    LightKind.SUN: {"intensity": {"default": 3.0}},
+    LightKind.SPOT: {"roll": {"doc": _COOKIE_ROLL}},
+    LightKind.SUN: {"intensity": {"default": 3.0}, "roll": {"doc": _COOKIE_ROLL}},
     LightKind.DISC: {"size": {"default": 0.5, "doc": "The radius."}},
     LightKind.TUBE: {
         "size": {"default": 0.05, "doc": "The radius."},

@@ -88,7 +88,7 @@ def _ids(name: str, manifest: Mapping[str, int]) -> Iterator[int]:
 
 
 def murmur3(data: bytes) -> int:
-    """MurmurHash3_x86_32 with seed 0 (Appleby 2011, public domain)."""
+    """MurmurHash3_x86_32 with seed 0 and its constants (Appleby 2011, public domain)."""
     aligned = len(data) // 4 * 4
     digest = 0
     for (word,) in struct.iter_unpack("<I", data[:aligned]):
@@ -108,6 +108,6 @@ def _rotate(word: int, count: int) -> int:
 
 
 def float_bits(number: int) -> int:
-    """A hash as the bits of a float that is a usual number: no zero, denormal, infinity or NaN."""
+    """A hash as the bits of a float that is a usual number: no zero, denormal, infinity or NaN (Cryptomatte, 1.2)."""
     exponent = number >> 23 & 0xFF
     return number ^ 1 << 23 if exponent in (0, 0xFF) else number

@@ -164,6 +164,10 @@ class Node:
         """The size of the outputs: that of the first linked input, else that of the graph."""
         return next(iter(inputs.values()), canvas)
 
+    def with_pixel_aspect(self, aspect: float) -> Self:
+        """The node as it is for a first picture whose pixels are `aspect` times as wide as high; mostly itself."""
+        return self
+
     def times(self, frame: int) -> Mapping[str, tuple[int, ...]]:
         """The frames of each input that are needed for a frame; of inputs that are not named only `frame` is.
 

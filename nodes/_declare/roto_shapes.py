@@ -101,7 +101,7 @@ def _declare_kind() -> ItemKind:
     return ItemKind("spline", tuple(values), "A closed curve through points with tangents.")
 
 
-ROTO_SHAPES = Items((_declare_kind(),), "shape", MAX_ROTO_SHAPES)
+ROTO_SHAPES = Items((_declare_kind(),), "shape", MAX_ROTO_SHAPES, ordered=True)
 """What a value of outlines can hold."""
 
 RotoShapeSet = Annotated[ItemSet, ROTO_SHAPES]

@@ -8,15 +8,9 @@ height. A file has a row for each point, without the zeros at its end: a corner 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any, cast
 
-POINT_LENGTH = 7
-"""The numbers of a point."""
+from .rows import SPLINE_ROWS, Row
 
-MAX_SPLINE_POINTS = 4096
-"""The most points of one spline: eight times the 500 of an outline that is traced by hand point by point."""
-
-Row = tuple[float, ...]
 Place = tuple[float, float]
 CubicCurve = tuple[Place, Place, Place, Place]
 """The four control points of a cubic Bezier curve."""
@@ -24,43 +18,22 @@ CubicCurve = tuple[Place, Place, Place, Place]
 
 def list_rows(numbers: Row) -> tuple[Row, ...]:
     """The rows of a spline, one for each point, without zeros at their end."""
-    return tuple(_trim_row(point) for point in split_points(numbers))
-
-
-def _trim_row(point: Row) -> Row:
-    length = len(point)
-    while length > 2 and point[length - 1] == 0.0:
-        length -= 1
-    return point[:length]
+    return SPLINE_ROWS.list(numbers)
 
 
 def split_points(numbers: Row) -> tuple[Row, ...]:
     """The seven numbers of each point."""
-    return tuple(numbers[at : at + POINT_LENGTH] for at in range(0, len(numbers), POINT_LENGTH))
+    return SPLINE_ROWS.split(numbers)
 
 
 def join_points(points: Iterable[Row]) -> Row:
     """The flat numbers of a spline from rows of two to seven numbers."""
-    return tuple(part for point in points for part in (*point, *(0.0,) * (POINT_LENGTH - len(point))))
+    return SPLINE_ROWS.join(points)
 
 
 def read_rows(setting: object) -> Row | None:
     """The flat numbers of a spline from the rows of a file, or from numbers that are flat already; None for others."""
-    if not isinstance(setting, list | tuple) or not setting:
-        return None
-    parts = cast("tuple[Any, ...]", tuple(setting))  # pyright: ignore[reportUnknownArgumentType]
-    if _are_numbers(parts):
-        return tuple(map(float, parts)) if len(parts) % POINT_LENGTH == 0 else None
-    if not all(isinstance(row, list | tuple) for row in parts):
-        return None
-    rows = [tuple(row) for row in cast("tuple[list[Any], ...]", parts)]
-    if not all(2 <= len(row) <= POINT_LENGTH and _are_numbers(row) for row in rows):
-        return None
-    return join_points(tuple(map(float, row)) for row in rows)
-
-
-def _are_numbers(parts: Iterable[object]) -> bool:
-    return all(isinstance(part, int | float) and not isinstance(part, bool) for part in parts)
+    return SPLINE_ROWS.read(setting)
 
 
 def list_curves(points: tuple[Row, ...]) -> tuple[CubicCurve, ...]:

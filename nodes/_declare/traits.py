@@ -28,6 +28,8 @@ class Trait(StrEnum):
     """It filters the picture: two such nodes in a row cost sharpness and time."""
     WARPS = "warps"
     """It shows pixels of the picture at other places, so that with overscan the result goes on beyond the frame."""
+    STRETCHES = "stretches"
+    """It shows all of the picture in another number of pixels, whose shape is another one where the sides differ."""
     CUTS_OUT = "cuts out"
     """Its result is a part of the picture, in pixels of the same size. Lengths after it follow the whole picture."""
     KEEPS_NON_FINITE = "keeps non-finite"

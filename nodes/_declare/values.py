@@ -10,8 +10,8 @@ from msgspec import Struct
 
 from .curves import MAX_POINTS
 from .items import ItemSet, NamedItem, Scalar
+from .rows import SPLINE_ROWS, STROKE_ROWS
 from .sockets import glsl_type
-from .splines import POINT_LENGTH
 
 Unit = Literal["px", "height", "deg", "EV", "ratio", "count", "s", "scene", "K", "mm"]
 """The unit of a number.
@@ -128,6 +128,10 @@ class Spline(Struct, frozen=True):
     """The value is a closed spline: seven numbers for each point, and in files a row. See `splines.py`."""
 
 
+class Stroke(Struct, frozen=True):
+    """The value is the way of a brush: x, y and pressure for each point, and in files a row. See `rows.py`."""
+
+
 class ColorRamp(Struct, frozen=True):
     """The value is a color ramp of stops `t, r, g, b, a, ...`, scene-linear, sorted by t: see `ramp_at`."""
 
@@ -169,6 +173,8 @@ class Items(Struct, frozen=True, dict=True):
     noun: str = "item"
     most: int = 1024
     convert: Callable[[object], Mapping[str, Any] | None] | None = None
+    ordered: bool = False
+    """True if the order of the items, which is that of their names, makes a difference."""
 
     @cached_property
     def by_name(self) -> Mapping[str, ItemKind]:
@@ -226,11 +232,13 @@ Prose = Annotated[str, Lines()]
 Points = Annotated[tuple[float, ...], Curve()]
 Stops = Annotated[tuple[float, ...], ColorRamp()]
 SplinePoints = Annotated[tuple[float, ...], Spline()]
+StrokePoints = Annotated[tuple[float, ...], Stroke()]
 Kernel3x3 = tuple[float, float, float, float, float, float, float, float, float]
 
 ValueType = Literal[
-    "float", "int", "bool", "choice", "color", "vector", "matrix", "curve", "ramp", "spline", "items", "path", "text"
-]
+    "float", "int", "bool", "choice", "color", "vector", "matrix", "curve", "ramp", "spline", "stroke", "items",
+    "path", "text",
+]  # fmt: skip
 Plain = Scalar | ItemSet
 """The types of values: JSON scalars, flat lists of numbers, and named items."""
 
@@ -245,7 +253,7 @@ class Value(Struct, frozen=True):
     type: ValueType
     default: Plain
     length: int = 1
-    """How many numbers: of a curve or spline per point, of a ramp per stop."""
+    """How many numbers: of a curve, spline or stroke per point, of a ramp per stop."""
     choices: tuple[str, ...] = ()
     low: float = float("-inf")
     high: float = float("inf")
@@ -361,5 +369,7 @@ def _tuple_type(name: str, parts: tuple[Any, ...], notes: tuple[Any, ...]) -> di
         if isinstance(note, Curve | ColorRamp):
             return {"type": "curve", "length": 2} if isinstance(note, Curve) else {"type": "ramp", "length": 5}
         if isinstance(note, Spline):
-            return {"type": "spline", "length": POINT_LENGTH}
-    raise TypeError(f"value '{name}': a list of any length is a Curve, a ColorRamp or a Spline")
+            return {"type": "spline", "length": SPLINE_ROWS.length}
+        if isinstance(note, Stroke):
+            return {"type": "stroke", "length": STROKE_ROWS.length}
+    raise TypeError(f"value '{name}': a list of any length is a Curve, a ColorRamp, a Spline or a Stroke")

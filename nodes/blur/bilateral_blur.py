@@ -2,6 +2,9 @@ from typing import Annotated
 
 from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Slider
 
+_REACH = 1.5
+"""The radius of the circular window in sigmas, as in OpenCV's bilateralFilter."""
+
 
 class BilateralBlur(Filter):
     """Smooth surfaces and noise but keep edges: neighbors with a different color have less weight.
@@ -44,7 +47,7 @@ class BilateralBlur(Filter):
         return "image" if self.sigma == 0.0 else None
 
     def passes(self, draw: Draw) -> Drawn:
-        radius = max(round(1.5 * self.sigma), 1)
+        radius = max(round(_REACH * self.sigma), 1)
         return draw(
             "bilateral_blur",
             image=self.image,

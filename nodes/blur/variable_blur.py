@@ -71,7 +71,7 @@ def _sigma(variance: float) -> float:
     if variance >= 1.0:
         return math.sqrt(variance)
     low, high = 0.0, 1.0
-    for _ in range(50):
+    for _ in range(50):  # bisection: 50 of the 53 bits of a double
         middle = (low + high) / 2.0
         low, high = (middle, high) if middle and _variance(middle) < variance else (low, middle)
     return high

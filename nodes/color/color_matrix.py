@@ -55,6 +55,10 @@ _MATRICES: Mapping[str, Kernel3x3] = MappingProxyType(
         ),
     }
 )
+"""Conversions follow the primaries that the node names; sepia is that of the W3C's Filter Effects."""
+
+_SINGULAR = 1e-12
+"""A determinant that is 0 but for the rounding of doubles."""
 
 
 class ColorMatrix(Filter):
@@ -106,7 +110,7 @@ def _inverse(matrix: Kernel3x3) -> Kernel3x3:
     a, b, c, d, e, f, g, h, i = matrix
     first, second, third = e * i - f * h, f * g - d * i, d * h - e * g
     whole = a * first + b * second + c * third
-    if abs(whole) < 1e-12:
+    if abs(whole) < _SINGULAR:
         return matrix
     return (
         first / whole,

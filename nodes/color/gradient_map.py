@@ -74,12 +74,15 @@ class GradientMap(Filter):
     def identity(self) -> str | None:
         return "image" if self.amount == 0.0 else None
 
+    def resolve_ramp(self) -> tuple[float, ...]:
+        """The stops of the palette, or those of the node."""
+        return self.ramp if self.palette == "ramp" else PALETTES[self.palette]
+
     def passes(self, draw: Draw) -> Drawn:
-        ramp = self.ramp if self.palette == "ramp" else PALETTES[self.palette]
         return draw.point(
             "gradient_map",
             self.image,
-            ramp=ramp_knots(ramp),
+            ramp=ramp_knots(self.resolve_ramp()),
             scale=self.scale,
             low=self.low,
             high=self.high,

@@ -3,6 +3,7 @@ from typing import Annotated, Literal
 from .._declare import Doc, Image, Pointwise, Slider, Trait
 
 _DAYLIGHT = 6504.0
+"""The correlated color temperature of D65, the white of Rec.709 (CIE 15)."""
 
 
 class WhiteBalance(Pointwise):

@@ -41,6 +41,9 @@ class CornerPin(Filter):
 
 Point = tuple[float, float]
 
+_SINGULAR = 1e-12
+"""An area or a determinant, of places as fractions of the picture, that is 0 but for the rounding of doubles."""
+
 
 def _map_square(corners: tuple[Point, Point, Point, Point]) -> tuple[float, ...]:
     """The matrix by rows that maps the unit square to a quadrangle (Heckbert 1989). All zeros where there is none."""
@@ -48,7 +51,7 @@ def _map_square(corners: tuple[Point, Point, Point, Point]) -> tuple[float, ...]
     across, down = (x1 - x2, y1 - y2), (x3 - x2, y3 - y2)
     skew = (x0 - x1 + x2 - x3, y0 - y1 + y2 - y3)
     area = across[0] * down[1] - down[0] * across[1]
-    if abs(area) < 1e-12:
+    if abs(area) < _SINGULAR:
         return (0.0,) * 9
     g = (skew[0] * down[1] - down[0] * skew[1]) / area
     h = (across[0] * skew[1] - skew[0] * across[1]) / area
@@ -64,4 +67,4 @@ def _invert(matrix: tuple[float, ...]) -> tuple[float, ...]:
         d * h - e * g, b * g - a * h, a * e - b * d,
     )  # fmt: skip
     determinant = a * inverse[0] + b * inverse[3] + c * inverse[6]
-    return tuple(number / determinant for number in inverse) if abs(determinant) > 1e-12 else (0.0,) * 9
+    return tuple(number / determinant for number in inverse) if abs(determinant) > _SINGULAR else (0.0,) * 9

@@ -19,6 +19,7 @@ from .._declare import (
 )
 
 _ENDLESS = 1e9
+"""Focal lengths: farther than any picture, and finite, so that GLSL can calculate with it."""
 
 _STEPS = 512
 """Of what a lens sees, from the axis to a corner."""

@@ -1,8 +1,12 @@
 import math
 from collections.abc import Mapping
-from typing import Annotated, Literal
+from dataclasses import replace
+from typing import Annotated, Literal, Self
 
 from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Pixels, Size, Slider, Trait
+
+_LOBES = 3.0
+"""The reach of the widest filter, Lanczos, in pixels of the smaller picture."""
 
 
 class Resize(Filter):
@@ -15,8 +19,9 @@ class Resize(Filter):
     aliases = (
         "reformat", "scale", "scale image", "resample", "change resolution", "resolution", "canvas size", "letterbox",
         "fit", "downscale", "image size", "down-res", "up-res", "tv scale",
+        "pixel aspect ratio", "anamorphic", "unsqueeze", "desqueeze", "square pixels",
     )  # fmt: skip
-    traits = (Trait.RESAMPLES,)
+    traits = (Trait.RESAMPLES, Trait.STRETCHES)
 
     image = Image()
     out = OutputSocket(follows="image")
@@ -24,6 +29,13 @@ class Resize(Filter):
         tuple[float, float],
         Slider(0.1, 4.0, unit="ratio", minimum=0.001, maximum=64.0, doc="Factor on the width and on the height."),
     ] = (1.0, 1.0)
+    square_pixels: Annotated[
+        bool,
+        Doc(
+            "Multiply the width by the pixel aspect ratio of the picture, so that its pixels become square: "
+            "for an anamorphic plate it is doubled."
+        ),
+    ] = False
     kernel: Annotated[
         Literal["box", "triangle", "catmull-rom", "mitchell", "lanczos"],
         Doc(
@@ -37,6 +49,9 @@ class Resize(Filter):
     def identity(self) -> str | None:
         return "image" if self.scale == (1.0, 1.0) else None
 
+    def with_pixel_aspect(self, aspect: float) -> Self:
+        return replace(self, scale=(self.scale[0] * aspect, self.scale[1])) if self.square_pixels else self
+
     def output_size(self, inputs: Mapping[str, Size], canvas: Size) -> Size:
         width, height = super().output_size(inputs, canvas)
         return (max(round(width * self.scale[0]), 1), max(round(height * self.scale[1]), 1))
@@ -49,7 +64,7 @@ class Resize(Filter):
     def _resample(self, draw: Draw, picture: Pixels, axis: int) -> Drawn:
         before, after = draw.size_of(picture), draw.size
         shrink = before[axis] / after[axis]
-        reach = math.ceil(3.0 * max(shrink, 1.0)) + 2
+        reach = math.ceil(_LOBES * max(shrink, 1.0)) + 2
         return draw(
             "resize",
             image=picture,

@@ -4,6 +4,9 @@ from typing import Annotated, Literal
 
 from .._declare import RGBA, Doc, Draw, Drawn, Field, Filter, Image, OutputSocket, Pixels, ProxyNote, Slider, Vector
 
+_DEEP = 1e6
+"""Pixels inside of the contour: deeper than any picture is wide, so that all of the inside belongs to the line."""
+
 
 class Outline(Filter):
     """Draw a line of any width around a mask, or around the picture's own alpha.
@@ -65,7 +68,9 @@ class Outline(Filter):
             "outline_line", result=Field(), contour=contour, first=first, last=last, fade=1.0 + self.softness
         )
         under = (
-            draw.point("outline_line", result=Field(), contour=contour, first=-1e6, last=last, fade=1.0 + self.softness)
+            draw.point(
+                "outline_line", result=Field(), contour=contour, first=-_DEEP, last=last, fade=1.0 + self.softness
+            )
             if behind
             else line
         )

@@ -24,6 +24,11 @@ _KERNELS: Mapping[str, Kernel3x3] = MappingProxyType(
         "scharr y": (-3, -10, -3, 0, 0, 0, 3, 10, 3),
     }
 )
+"""Named after their authors, or as in textbooks. "laplacian isotropic" has rotational symmetry up to the fourth order;
+"emboss" has a sum of 0, as "relief" has."""
+
+_ZERO_SUM = 1e-9
+"""A sum of weights that is 0 but for rounding: it cannot be made 1."""
 
 
 class Convolve3x3(Filter):
@@ -101,7 +106,7 @@ class Convolve3x3(Filter):
         """The nine weights that are applied: preset, normalization and scale resolved."""
         kernel = _KERNELS.get(self.preset, self.kernel)
         total = {"none": 1.0, "sum": fsum(kernel), "absolute sum": fsum(map(abs, kernel))}[self.normalize]
-        factor = self.scale / total if abs(total) > 1e-9 else self.scale
+        factor = self.scale / total if abs(total) > _ZERO_SUM else self.scale
         a, b, c, d, e, f, g, h, i = (weight * factor for weight in kernel)
         return (a, b, c, d, e, f, g, h, i)
 

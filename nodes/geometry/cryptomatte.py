@@ -57,7 +57,7 @@ class Cryptomatte(Reader):
         coverage = draw.point("cryptomatte_nothing", result=Field())
         if not matte.ids and self.pick.strip() == "*":
             for layer in ranks:
-                coverage = draw.point("cryptomatte_anything", result=Field(), found=coverage, ranks=layer)
+                coverage = draw.point("cryptomatte_anything", result=Field(), coverage=coverage, ranks=layer)
         for first in range(0, len(ids), _AT_ONCE):
             batch = ids[first : first + _AT_ONCE]
             # Halves of the bits: floats hold them exactly, and no driver takes them for a number that it may change.
@@ -67,7 +67,7 @@ class Cryptomatte(Reader):
                 coverage = draw.point(
                     "cryptomatte_covered",
                     result=Field(),
-                    found=coverage,
+                    coverage=coverage,
                     ranks=layer,
                     ids=tuple(halves),
                     count=len(batch),
@@ -76,6 +76,6 @@ class Cryptomatte(Reader):
         for layer in ranks:
             colors = draw.point("cryptomatte_mixed", result=Vector(width=4), colors=colors, ranks=layer)
         return {
-            "matte": draw.point("cryptomatte", result=Field(), found=coverage, invert=self.invert),
+            "matte": draw.point("cryptomatte", result=Field(), coverage=coverage, invert=self.invert),
             "colors": draw.point("cryptomatte_colors", colors=colors),
         }

@@ -99,9 +99,9 @@ class GeometryEdges(Filter):
             )
         return {
             "edges": edges,
-            "gap": draw.point("geometry_edges_gap", result=field, found=differences),
-            "crease": draw.point("geometry_edges_crease", result=field, found=differences),
-            "border": draw.point("geometry_edges_border", result=field, found=differences),
+            "gap": draw.point("geometry_edges_gap", result=field, differences=differences),
+            "crease": draw.point("geometry_edges_crease", result=field, differences=differences),
+            "border": draw.point("geometry_edges_border", result=field, differences=differences),
         }
 
     def _separate(self, draw: Draw) -> Drawn:

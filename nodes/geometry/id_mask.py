@@ -36,9 +36,9 @@ class IdMask(Filter):
         for first in range(0, len(spans), _SPANS):
             chosen = [*spans[first : first + _SPANS], *[(1.0, 0.0)] * _SPANS][:_SPANS]
             flat = tuple(end for span in chosen for end in span)
-            mask = draw.point("id_mask_add", self.ids, result=Field(), found=mask, spans=flat)
+            mask = draw.point("id_mask_add", self.ids, result=Field(), mask=mask, spans=flat)
         return {
-            "mask": draw.point("id_mask", result=Field(), found=mask, invert=self.invert),
+            "mask": draw.point("id_mask", result=Field(), matte=mask, invert=self.invert),
             "colors": draw.point("id_mask_colors", self.ids),
         }
 

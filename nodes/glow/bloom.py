@@ -22,6 +22,7 @@ from .._declare import (
 )
 
 _NO_LIMIT = 65504.0
+"""The largest half float: nothing that passes keep is brighter."""
 
 _WHITE = (1.0, 1.0, 1.0, 1.0)
 

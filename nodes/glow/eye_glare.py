@@ -10,6 +10,9 @@ _SMOOTH = 0.2
 _NEAR = (6.0, 14.0)
 """Where a smaller size takes over, in pixels of it. A choice."""
 
+_HALO_TEXELS = 2048
+"""For 6 degrees: 54 texels to the sigma of a ring of the halo, which is 0.16 degrees (1 / sqrt(2 * 19.75))."""
+
 _DATA = Vector(width=4)
 
 
@@ -79,7 +82,7 @@ class EyeGlare(Filter):
     def _kernel(
         self, draw: Draw, degrees: float, cell: int, reach: tuple[int, int], factor: int = 0, whole: bool = False
     ) -> Drawn:
-        halo = draw("eye_glare_halo", size=(2048, 1), result=_DATA)
+        halo = draw("eye_glare_halo", size=(_HALO_TEXELS, 1), result=_DATA)
         first, last = (0.0, 0.0) if whole else ((factor or cell) * part for part in _NEAR)
         # "from" and "to" are words of Python's or of GLSL's: they travel as one.
         return draw(

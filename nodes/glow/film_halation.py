@@ -6,6 +6,11 @@ from typing import Annotated, Literal
 from .._declare import RGBA, Doc, Draw, Drawn, Filter, Fraction, Image, OutputSocket, Slider, Trait
 
 _NO_LIMIT = 65504.0
+"""The largest half float: nothing that passes keep is brighter."""
+
+_SMOOTH = 2.0
+"""The sigma of the narrowest blur that a smaller size must still have, in its pixels: then its grid is not seen in the
+picture that is enlarged by tents. Chosen by judgement."""
 
 _INDEX = 1.48
 """Refractive index of cellulose triacetate."""
@@ -154,7 +159,7 @@ class FilmHalation(Filter):
 
 def _factor(sigma: float) -> int:
     """How much smaller the picture may be for a blur of `sigma` pixels and wider ones."""
-    return 4 if sigma >= 8.0 else 2 if sigma >= 4.0 else 1
+    return next((factor for factor in (4, 2) if sigma >= _SMOOTH * factor), 1)
 
 
 def _mixture(reach: float) -> list[tuple[float, float]]:

@@ -18,6 +18,7 @@ from .._declare import (
 )
 
 _NO_LIMIT = 65504.0
+"""The largest half float: nothing that passes keep is brighter."""
 
 _FINEST = 4.0
 """Sigma of the sharpest ghosts in pixels: they are made at half the size, and the smallest is four times smaller."""

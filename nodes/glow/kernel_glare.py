@@ -21,6 +21,7 @@ from .._declare import (
 )
 
 _NO_LIMIT = 65504.0
+"""The largest half float: nothing that passes keep is brighter."""
 
 _RINGS = 200.0
 """Half the height of an iris' pattern in units of its Fourier transform: its first dark ring lies at 2 percent."""

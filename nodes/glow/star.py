@@ -21,6 +21,7 @@ from .._declare import (
 )
 
 _NO_LIMIT = 65504.0
+"""The largest half float: nothing that passes keep is brighter."""
 
 _SQUARE = 1e-5
 """Turned by less, in radians, the arms lie along rows and columns: a pixel off at the end of the largest picture."""

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from .._declare import RGBA, Dial, Doc, Draw, Drawn, Filter, Fraction, Image, OutputSocket, ProxyNote, Slider, Trait
 
 _NO_LIMIT = 65504.0
+"""The largest half float: nothing that passes keep is brighter."""
 
 _LEFT = 0.01
 """How much of a streak's light is left at its length."""

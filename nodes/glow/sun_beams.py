@@ -20,6 +20,7 @@ from .._declare import (
 )
 
 _NO_LIMIT = 65504.0
+"""The largest half float: nothing that passes keep is brighter."""
 
 _LEFT = 0.01
 """However long the beams and strong the decay, this much is left: of the way to the source, and of the weight."""

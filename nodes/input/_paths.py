@@ -10,6 +10,7 @@ from typing import NamedTuple
 from .._declare import Draw, Drawn, Field, Vector
 
 TILE = 16
+"""Pixels of a side of a tile. Chosen by judgement: smaller ones need larger tables, larger ones hold more spans."""
 SEGMENTS = 8
 """Segments of a span."""
 

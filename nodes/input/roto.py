@@ -36,8 +36,13 @@ _COARSE = 0.004
 """How far a segment may be that is no longer than `_SHORT`: what is too much at its middle is missing at its ends."""
 
 _SHORT = 1.5
+"""Pixels: the length up to which a segment counts as short. Coverage is a mean over a pixel, where errors even out."""
+
 _LONG = 12.0
 """The longest segment in pixels: a span then lies in few tiles."""
+
+_FARTHEST = 1e6
+"""Pixels from the corner of the picture: floats of 32 bits have 1/16 of a pixel there."""
 
 _MOST_SPANS = 64
 """The most spans of one curve: 512 segments, as many as a quarter of a circle needs that is 3000 pixels high."""
@@ -153,7 +158,7 @@ def _trace_path(outline: RotoShape, size: Size) -> _Path:
 
 def _limit(place: float) -> float:
     """A place that is exact enough in 32 bits, and the same within pictures: no picture is so large."""
-    return min(max(place, -1e6), 1e6)
+    return min(max(place, -_FARTHEST), _FARTHEST)
 
 
 def _count_spans(curve: CubicCurve) -> int:

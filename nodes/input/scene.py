@@ -28,6 +28,9 @@ _NEAR = 0.01
 _JITTERS = 16
 """Frames until the samples of a pixel start again: as many as antialiasing over time remembers well."""
 
+_SENSOR_WIDTH = 36.0
+"""Millimeters: the full frame of 35 mm film, for which focal lengths are usually told; Blender's default too."""
+
 
 class Scene(Source):
     """Draw meshes into every channel that effects need: albedo, normals, depth, position, velocity, ids and more.
@@ -143,7 +146,7 @@ class Scene(Source):
         }
 
     def _camera(self, frame: int, aspect: float) -> CameraModel:
-        across, turn = self.focal / 36.0, self.azimuth + self.orbit * (frame - 1)
+        across, turn = self.focal / _SENSOR_WIDTH, self.azimuth + self.orbit * (frame - 1)
         return orbit_camera(self.target, self.distance, turn, self.elevation, (across, across * aspect))
 
     def _motion(self, frame: int) -> Motion:

@@ -41,11 +41,16 @@ _COARSE = 0.006
 """How far a segment may be that is no longer than `_SHORT`: what is too much at its middle is missing at its ends."""
 
 _SHORT = 1.5
+"""Pixels: the length up to which a segment counts as short. Coverage is a mean over a pixel, where errors even out."""
+
 _LONG = 64.0
 """The longest segment in pixels: a slanted one then lies in few tiles that it does not cross."""
 
 _LOOSE = 0.02
 """How far in pixels a point may lie from a chord that stands for it: what lies between is at most 0.06 away."""
+
+_BLUR_REACH = 4.0
+"""Sigmas that a Gaussian of `draw.blur` reaches."""
 
 _MOST_SEGMENTS = 512
 """The most segments of a curve: as many as a quarter of a circle needs that is 3000 pixels high."""
@@ -173,7 +178,7 @@ class Text(Filter):
     matte = OutputSocket(Field(doc="How much of each pixel the letters cover, 0..1."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
-        size = max(self.size, 1e-6)
+        size = max(self.size, 1e-6)  # a text of no size is a point
         block = TextBlock(
             draw.expand_text(self.text, self.image), Typeface(self.font, self.family, self.weight), self.tracking,
             self.leading, self.align, self.direction, self.wrap_width / size,
@@ -194,7 +199,7 @@ class Text(Filter):
     @property
     def _margin(self) -> float:
         """How far in pixels letters outside of the picture can reach into it."""
-        return self.outline_width + max(map(abs, self.shadow_offset)) + 4.0 * self.shadow_blur + 2.0
+        return self.outline_width + max(map(abs, self.shadow_offset)) + _BLUR_REACH * self.shadow_blur + 2.0
 
     def _place(self, typeset: TypesetText, size: Size) -> _Placement:
         """Where the block of text is: its left top in pixels, turned around the anchor."""

@@ -27,10 +27,17 @@ _FINEST = {"draft": 4.0, "normal": 6.0, "high": 12.0, "exact": math.inf}
 """Radius in pixels of the largest disc that is made of the picture's own pixels."""
 
 _ENDLESS = 1e9
+"""A radius or distance beyond all pictures, and finite, so that GLSL can calculate with it."""
 
 _SOFTNESS = 4.0 * 0.354
 """What averaging and interpolating add to a disc's radius squared, in pixels of the smaller size: four times the
 variance that they add, as the variance of a disc is a quarter of its radius squared."""
+
+_LEAST_SQUARE = 0.25
+"""The square of the least radius, half a pixel, that a stretched disc keeps: it is then no smaller than a pixel."""
+
+_SIMPSON_STEPS = 32
+"""Of Simpson's rule over half a blade: the area is exact to 2e-6 for three blades, to 4e-8 for five."""
 
 _MIDDLE = 0.72
 """A typical radius of a level, as a part of its largest one: the mean from a half to the whole, evenly by octaves,
@@ -211,7 +218,9 @@ class DepthOfField(Filter):
         image, radius = gathered["image"], gathered["radius"]
         # Averaging and interpolating spreads light along both axes, and makes smaller discs rounder.
         widest = (_MIDDLE * finest) ** 2
-        across, down = (math.sqrt((widest - _SOFTNESS) / max(widest / part**2 - _SOFTNESS, 0.25)) for part in stretch)
+        across, down = (
+            math.sqrt((widest - _SOFTNESS) / max(widest / part**2 - _SOFTNESS, _LEAST_SQUARE)) for part in stretch
+        )
         smaller = self._bokeh(draw, finest, (across, down))
         near, hidden = self._layers(draw, image, radius, smaller, levels, finest, -1.0)
         far, filled = self._layers(draw, image, radius, smaller, levels, finest, 1.0)
@@ -287,10 +296,10 @@ class DepthOfField(Filter):
 
     def _area(self, inner: float) -> float:
         """Of an aperture of blades whose corners are 1 away from its middle, by Simpson's rule over half a blade."""
-        step, sum = math.pi / self.blades / 32, 0.0
-        for i in range(33):
+        step, sum = math.pi / self.blades / _SIMPSON_STEPS, 0.0
+        for i in range(_SIMPSON_STEPS + 1):
             edge = inner / (self.roundness + (1.0 - self.roundness) * math.cos(i * step))
-            sum += edge * edge * (1 if i in (0, 32) else 4 if i % 2 else 2)
+            sum += edge * edge * (1 if i in (0, _SIMPSON_STEPS) else 4 if i % 2 else 2)
         return self.blades * sum * step / 3.0
 
     def _layers(

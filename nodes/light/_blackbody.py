@@ -11,7 +11,7 @@ LUMINANCE = (0.2126729, 0.7151522, 0.0721750)
 
 def blackbody_chromaticity(kelvin: float) -> tuple[float, float]:
     """The CIE 1931 chromaticity x, y of a black body (Krystek 1985, in CIE 1960 uv: exact to 0.0001)."""
-    t = min(max(kelvin, COOLEST), HOTTEST)
+    t = min(max(kelvin, COOLEST), HOTTEST)  # all numbers below are Krystek's, and those of the conversion to x, y
     u = (0.860117757 + 1.54118254e-4 * t + 1.28641212e-7 * t * t) / (1.0 + 8.42420235e-4 * t + 7.08145163e-7 * t * t)
     v = (0.317398726 + 4.22806245e-5 * t + 4.20481691e-8 * t * t) / (1.0 - 2.89741816e-5 * t + 1.61456053e-7 * t * t)
     scale = 2.0 * u - 8.0 * v + 4.0

@@ -10,6 +10,8 @@ SKY = (128, 64)
 """What matte surfaces make of the surroundings needs no finer picture of them."""
 
 _IRRADIANCE = (64, 32)
+"""Directions for which matte light is computed; it is interpolated between them. For noise with a sun of 300 the light
+changes by 0.13 % (RMS) with twice as many along both sides, and by 0.46 % with half as many."""
 
 
 def shrunk(draw: Draw, id: str, environment: Pixels, size: Size) -> Drawn:

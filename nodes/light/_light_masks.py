@@ -16,12 +16,15 @@ _RAYS = 4
 """Rays from a pixel to a light with a size, as many as contact shadows take; 16 neighbors lend theirs."""
 
 _KINDS = {LightKind.SUN: 0.0, LightKind.POINT: 1.0, LightKind.SPOT: 1.0, LightKind.SPHERE: 1.0, LightKind.DISC: 2.0}
-"""The numbers of the shapes in GLSL; all others are rectangles."""
+"""The numbers of the shapes in GLSL."""
+
+_RECTANGLE = 3.0
+"""The number of all other shapes."""
 
 
 def is_limited(light: Light) -> bool:
-    """True for a light that does not light everything."""
-    return light.shadow or light.matte != 0
+    """True for a light that does not light everything alike."""
+    return light.shadow or light.matte != 0 or light.cookie != 0
 
 
 def draw_masks(
@@ -83,5 +86,5 @@ def _pack_shape(light: Light) -> tuple[float, ...]:
     """
     place = tuple(-part for part in light.aim) if light.kind is LightKind.SUN else light.place
     along, across = light.half_axes
-    shape = _KINDS.get(light.kind, 3.0) if light.shadow else -1.0
+    shape = _KINDS.get(light.kind, _RECTANGLE) if light.shadow else -1.0
     return (*place, shape, *along, _find_radius(light), *across, float(_is_soft(light)))

@@ -9,6 +9,18 @@ from .._declare import Draw, Drawn, Light, LightKind, Vector
 from ._area_lights import AREA_KINDS, pack_area_light
 from ._blackbody import blackbody_rec709
 
+_ENDLESS = 1e18
+"""A radius that holds every scene, and whose square a float of 32 bits can hold."""
+
+_LEAST_SIZE = 1e-4
+"""The least radius of a ball of light, in units of the scene: a point would be divided by."""
+
+_LEAST_CONE = 1e-4
+"""The least difference of the cosines of both cones of a spot, over which its light falls off: a sharp edge."""
+
+_LARGER, _ROUNDING = 1.0001, 1e-6
+"""What makes up for the rounding of floats, 6e-8: a part of the radius, and of the largest coordinate."""
+
 TILE = 16
 """Pixels across a tile."""
 
@@ -68,7 +80,7 @@ def _sort_into_tiles(draw: Draw, place: Drawn, lights: list[Light], texels: int)
         )
         for side in (1.0, -1.0)
     )
-    balls = draw.table(tuple(part for light in lights for part in _ball(light, 1e18)), 1)
+    balls = draw.table(tuple(part for light in lights for part in _ball(light, _ENDLESS)), 1)
     return draw(
         "deferred_lighting_tile",
         low=low,
@@ -91,11 +103,11 @@ def _pack_light(light: Light, gain: float) -> tuple[float, ...]:
     red, green, blue = (gain * light.gain * part for part in light.color)
     x, y, z = light.aim
     window = 1.0 / light.reach**2 if light.reach > 0.0 and kind is not LightKind.SUN else 0.0
-    size = max(light.size, 1e-4) if kind is LightKind.SPHERE else -1.0 if kind is LightKind.SUN else 0.0
+    size = max(light.size, _LEAST_SIZE) if kind is LightKind.SPHERE else -1.0 if kind is LightKind.SUN else 0.0
     cone = (0.0, 0.0, 0.0, 1.0)
     if kind is LightKind.SPOT:
         outer = math.cos(light.outer)
-        scale = 1.0 / max(math.cos(min(light.inner, light.outer)) - outer, 1e-4)
+        scale = 1.0 / max(math.cos(min(light.inner, light.outer)) - outer, _LEAST_CONE)
         cone = (-x * scale, -y * scale, -z * scale, -outer * scale)
     place = (-x, -y, -z) if kind is LightKind.SUN else light.place
     return (*place, window, red, green, blue, size, *cone)
@@ -111,7 +123,7 @@ def _ball(light: Light, endless: float = math.inf) -> tuple[float, float, float,
         along = radius / (2.0 * math.cos(angle)) if angle < math.pi / 4 else radius * math.cos(angle)
         radius = along if angle < math.pi / 4 else radius * math.sin(angle)
     x, y, z = (place + along * part for place, part in zip(light.place, light.aim, strict=True))
-    return (x, y, z, 1.0001 * radius + 1e-6 * max(map(abs, (*light.place, x, y, z))))
+    return (x, y, z, _LARGER * radius + _ROUNDING * max(map(abs, (*light.place, x, y, z))))
 
 
 def _all(count: int, texels: int) -> tuple[float, ...]:

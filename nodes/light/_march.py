@@ -5,6 +5,7 @@ import math
 from .._declare import Draw, Drawn, Pixels, Vector
 
 _LEVELS = 3
+"""How often cells of 4 x 4 are joined: a ray then crosses a picture of 1920 pixels in 30 of the largest cells."""
 
 
 def surfaces(draw: Draw, depth: Pixels, owner: str, solid: tuple[float, ...] | None = None) -> Drawn:

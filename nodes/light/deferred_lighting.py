@@ -28,8 +28,15 @@ from .._declare import (
 )
 from ._area_lights import AREA_KINDS, COSINE_CELLS, read_cosines
 from ._coverage import COVERAGE_REACH
+from ._light_cookies import tabulate_throws
 from ._light_masks import BATCH, draw_masks, is_limited
 from ._light_tables import sort_lamps, tabulate_lights
+
+_R3_ROOT = 1.2207440846057596
+"""The root of x^4 = x + 1."""
+
+_SEED_STEP = 7919
+"""How far apart in the sequence swarms of two seeds begin: a prime above `MAX_LIGHTS`, so that they share no place."""
 
 _HERE = dict.fromkeys(("albedo", "material", "occlusion", "normal", "place", "near"), COVERAGE_REACH) | {"coverage": 0}
 """What a pixel is lit by: its own, or its neighbors'; lights and what they reach may be read anywhere."""
@@ -66,8 +73,8 @@ class DeferredLighting(Filter):
     at once.
 
     A light with `shadow` casts shadows of what the picture shows, by rays through the depth (McGuire and Mara 2014),
-    soft for a light with a size. A light with a `matte` lights only what is in one of the four mattes. `out` is diffuse
-    and specular light and emission.
+    soft for a light with a size. A light with a `matte` lights only what is in one of the four mattes. A light with a
+    `cookie` throws one of four pictures, as a slide projector does. `out` is diffuse and specular light and emission.
     """
 
     aliases = (
@@ -89,6 +96,15 @@ class DeferredLighting(Filter):
     matte_2 = Field(1.0, folded=True, doc="Another matte.")
     matte_3 = Field(1.0, folded=True, doc="Another matte.")
     matte_4 = Field(1.0, folded=True, doc="Another matte.")
+    cookie_1 = Image(
+        (1.0, 1.0, 1.0, 1.0),
+        own_size=True,
+        folded=True,
+        doc="A picture that lights can throw: leaves, clouds; by longitude and latitude for points and spheres.",
+    )
+    cookie_2 = Image((1.0, 1.0, 1.0, 1.0), own_size=True, folded=True, doc="Another picture that lights can throw.")
+    cookie_3 = Image((1.0, 1.0, 1.0, 1.0), own_size=True, folded=True, doc="Another picture that lights can throw.")
+    cookie_4 = Image((1.0, 1.0, 1.0, 1.0), own_size=True, folded=True, doc="Another picture that lights can throw.")
     model: Annotated[Literal["ggx", "phong"], Doc("The shape of highlights.")] = "ggx"
     roughness: Annotated[Fraction, Doc("How wide highlights are: 0 polished, 1 dull.")] = 0.4
     metal: Annotated[Fraction, Doc("1 reflects in the color of the albedo, without diffuse light.")] = 0.0
@@ -274,9 +290,14 @@ class DeferredLighting(Filter):
             "deferred_lighting_limited",
             self.albedo,
             self.material,
+            self.cookie_1,
+            self.cookie_2,
+            self.cookie_3,
+            self.cookie_4,
             **surface,
             lit=light,
             mask=mask,
+            throws=tabulate_throws(draw, lamps),
             lights=tabulate_lights(draw, lamps, self.intensity),
             areas=tabulate_lights(draw, areas, self.intensity),
             cosines=draw.table(read_cosines(), COSINE_CELLS),
@@ -296,9 +317,9 @@ class DeferredLighting(Filter):
 
     def _swarm(self, most: int) -> Iterable[Light]:
         """Evenly in the box: Roberts's R3 sequence (2018), whose steps are powers of the root of x^4 = x + 1."""
-        count, root = min(self.swarm, most), 1.2207440846057596
+        count, root = min(self.swarm, most), _R3_ROOT
         for number in range(count):
-            at = number + 1 + 7919 * self.swarm_seed
+            at = number + 1 + _SEED_STEP * self.swarm_seed
             x, y, z = (
                 middle + side * (2.0 * ((0.5 + at * root**-power) % 1.0) - 1.0)
                 for middle, side, power in zip(self.swarm_place, self.swarm_spread, (1, 2, 3), strict=True)

@@ -2,6 +2,9 @@ from typing import Annotated, Literal
 
 from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, OutputSocket, Slider
 
+_REACH = 1.617
+"""Sigmas from a Gaussian edge s to where 4 s (1 - s), which is 1 on the edge, has fallen to 0.2, on either side."""
+
 
 class EdgeMatte(Filter):
     """Make a matte of the edge of another one: 1 on the edge, falling to 0 on both sides.
@@ -32,6 +35,5 @@ class EdgeMatte(Filter):
     out = OutputSocket(Field(doc="1 on the edge, 0 away from it."))
 
     def passes(self, draw: Draw) -> Drawn:
-        # 4 s (1 - s) of a Gaussian edge falls to 0.2 at 1.617 sigma on either side.
-        soft = draw.blur(self.matte, self.width / (2.0 * 1.617), self.edge)
+        soft = draw.blur(self.matte, self.width / (2.0 * _REACH), self.edge)
         return draw.point("edge_matte", self.matte, soft=soft, side=self.side, gain=self.gain, result=Field())

@@ -20,8 +20,11 @@ from .._declare import (
 )
 
 _BINS = 128
+"""A quarter stop each, for 32 stops."""
 _FOLD = 32
 """Rows of a table that one draw adds up."""
+_LEAST_SHARE = 0.001
+"""Between the percentiles there is at least this part of the pixels, so that there is something to average."""
 _LONGEST = 8192
 """Pixels of a row that one draw looks at: more may not be on the device."""
 
@@ -155,12 +158,12 @@ class AutoExposure(Filter):
                 count=_FOLD,
             )
             part = None  # what is left is made as a whole, so that not all rows are needed at once
-        low = min(self.low, self.high, 0.999)
+        low = min(self.low, self.high, 1.0 - _LEAST_SHARE)
         return draw(
             "auto_exposure_percentiles",
             table=table,
             size=(1, 1),
             result=Number(),
             low=low,
-            high=max(self.high, low + 0.001),
+            high=max(self.high, low + _LEAST_SHARE),
         )

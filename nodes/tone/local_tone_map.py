@@ -3,6 +3,7 @@ from typing import Annotated
 from .._declare import Doc, Draw, Drawn, Field, Filter, Image, Number, Pixels, ProxyNote, Slider, Trait, Vector
 
 _SCALES = 8
+"""Of the paper (Reinhard et al. 2002)."""
 _RATIO = 1.6
 """From one scale to the next; the surround of one is the center of the next."""
 

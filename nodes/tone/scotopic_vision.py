@@ -9,6 +9,9 @@ _DAY, _NIGHT = 17.25 * pi / 2.0 + 25.72, 2.0
 _FINEST, _STEP = 0.5, sqrt(2.0)
 """Sigma of the least blur in pixels, and from one to the next."""
 
+_STRIPE_SIGMAS = 1.86
+"""Sigmas in a period of stripes of which a Gaussian blur leaves 0.3 percent."""
+
 
 class ScotopicVision(Filter):
     """See as eyes do at night: dark places lose color and sharpness, reds get darker, and the rest turns bluish.
@@ -86,8 +89,7 @@ class ScotopicVision(Filter):
             blue_shift=self.blue_shift,
             brightness=self.brightness,
         )
-        # Pixels that a stripe per degree is wide: the sigma that takes stripes down to 0.3 percent is 1 / 1.86 of it.
-        scale = self.amount * self.blur * draw.size[0] / degrees(self.field_of_view) / 1.86
+        scale = self.amount * self.blur * draw.size[0] / degrees(self.field_of_view) / _STRIPE_SIGMAS
         widest = scale * sqrt(_NIGHT**-2 - _DAY**-2)
         if widest < _FINEST / 2.0:
             return night_view

@@ -121,10 +121,10 @@ float smaa_right_of(vec2 from, vec2 to, vec2 center) {
 }
 
 // Where the line through rising stairs starts and ends, depending on how the edge goes on there. Where that is
-// ambiguous there are two candidates, chosen by `one`, and the areas are averaged. The pixel below the first stair has
+// ambiguous there are two candidates, chosen by `upper`, and the areas are averaged. The pixel below the first stair has
 // its center at (1.5, 0.5).
-vec2 smaa_start(int on, bool one) { return on == 1 || (on != 2 && !one) ? vec2(1.0, 0.0) : vec2(on == 0 ? 0.0 : 1.0); }
-vec2 smaa_end(int on, bool one) { return on == 2 || (on != 1 && !one) ? vec2(1.0, 0.0) : vec2(on == 0 ? 0.0 : 1.0); }
+vec2 smaa_start(int on, bool upper) { return on == 1 || (on != 2 && !upper) ? vec2(1.0, 0.0) : vec2(on == 0 ? 0.0 : 1.0); }
+vec2 smaa_end(int on, bool upper) { return on == 2 || (on != 1 && !upper) ? vec2(1.0, 0.0) : vec2(on == 0 ? 0.0 : 1.0); }
 
 // The areas of the diagonal through the edge above this pixel. `rise` is -1 for stairs that rise to the right, 1 for
 // stairs that fall.
@@ -133,8 +133,8 @@ vec2 smaa_diagonal(int rise, int reach) {
     if (before.x + after.x < 3) return vec2(0.0);
     float left = float(before.x), size = float(before.x + after.x + 1);
     vec2 area = vec2(0.0);
-    for (int one = 0; one < 2; ++one) {
-        vec2 from = smaa_start(before.y, one == 1), to = smaa_end(after.y, one == 1) + size;
+    for (int candidate = 0; candidate < 2; ++candidate) {
+        vec2 from = smaa_start(before.y, candidate == 1), to = smaa_end(after.y, candidate == 1) + size;
         area += 0.5 * vec2(
             1.0 - smaa_right_of(from, to, left + vec2(1.5, 0.5)), smaa_right_of(from, to, left + vec2(1.5, 1.5))
         );

@@ -8,10 +8,10 @@ vec4 cas_sharpen(float sharpness) {
     vec3 down = cas_sharpen_at(0, 1), middle = cas_sharpen_at(0, 0);
     vec3 least = min(min(min(left, middle), min(right, up)), down);
     vec3 most = max(max(max(left, middle), max(right, up)), down);
-    vec3 one = cas_sharpen_at(-1, -1), two = cas_sharpen_at(1, -1);
-    vec3 three = cas_sharpen_at(-1, 1), four = cas_sharpen_at(1, 1);
-    least += min(min(min(one, two), min(three, four)), least);
-    most += max(max(max(one, two), max(three, four)), most);
+    vec3 upper_left = cas_sharpen_at(-1, -1), upper_right = cas_sharpen_at(1, -1);
+    vec3 lower_left = cas_sharpen_at(-1, 1), lower_right = cas_sharpen_at(1, 1);
+    least += min(min(min(upper_left, upper_right), min(lower_left, lower_right)), least);
+    most += max(max(max(upper_left, upper_right), max(lower_left, lower_right)), most);
     // The smaller distance to black or white, relative to the brightest neighbor, says how much is safe to add.
     vec3 safe = sqrt(clamp(min(least, 2.0 - most) / max(most, 1e-6), 0.0, 1.0));
     vec3 weight = -safe / mix(8.0, 5.0, clamp(finite(sharpness), 0.0, 1.0));

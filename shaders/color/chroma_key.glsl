@@ -3,8 +3,8 @@
 
 // How much the screen's channel exceeds the limit that the other two channels set.
 float chroma_key_excess(vec3 rgb, int channel, int limit) {
-    float one = rgb[(channel + 1) % 3], two = rgb[(channel + 2) % 3];
-    return rgb[channel] - (limit == LIMIT_AVERAGE ? 0.5 * (one + two) : max(one, two));
+    float next = rgb[(channel + 1) % 3], after = rgb[(channel + 2) % 3];
+    return rgb[channel] - (limit == LIMIT_AVERAGE ? 0.5 * (next + after) : max(next, after));
 }
 
 // The part of each channel in the sum of all three: color without brightness.

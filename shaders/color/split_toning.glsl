@@ -2,7 +2,7 @@
 #include "lib/color.glsl"
 #include "lib/finite.glsl"
 
-const float split_toning_gray = 0.18;
+const float split_toning_gray = 0.18;  // middle gray
 
 // A tint as factors for the channels that keep the luminance of gray.
 vec3 split_toning_tint(vec4 color) {

@@ -9,9 +9,10 @@ const vec3 grid_warp_nowhere = vec3(0.0, 0.0, -1.0);
 // What each of four points in a row counts at t, from 0 to 3, and how fast that changes. Beyond the ends it is linear.
 void grid_warp_weigh(float t, int interpolation, out vec4 weights, out vec4 slopes) {
     float inside = clamp(t, 0.0, 3.0), cell = min(floor(inside), 2.0), f = inside - cell, g = 1.0 - f;
-    vec4 order = vec4(0.0, 1.0, 2.0, 3.0), one = vec4(equal(order, vec4(cell))), two = vec4(equal(order, vec4(cell + 1.0)));
-    weights = g * one + f * two;
-    slopes = two - one;
+    vec4 order = vec4(0.0, 1.0, 2.0, 3.0);
+    vec4 lower = vec4(equal(order, vec4(cell))), upper = vec4(equal(order, vec4(cell + 1.0)));
+    weights = g * lower + f * upper;
+    slopes = upper - lower;
     if (interpolation == INTERPOLATION_SMOOTH) {
         // The second derivatives at the points of a natural cubic spline, which are 0 at both ends.
         vec4 second = vec4(1.6, -3.6, 2.4, -0.4), third = second.wzyx;
@@ -47,9 +48,9 @@ vec3 grid_warp_source(vec2 at, int interpolation, const vec4 across[4], const ve
     for (int i = 0; i < starts_size.x; ++i) {
         vec4 start = starts_at(ivec2(i, 0));
         vec2 away = (start.xy - at / vec2(extent)) * vec2(extent);
-        float far = dot(away, away);
-        if (far < nearest) {
-            nearest = far;
+        float square = dot(away, away);
+        if (square < nearest) {
+            nearest = square;
             t = start.zw;
         }
     }
@@ -58,11 +59,11 @@ vec3 grid_warp_source(vec2 at, int interpolation, const vec4 across[4], const ve
         away = at - grid_warp_place(t, interpolation, across, down, slope);
         float area = determinant(slope);
         if (abs(area) < 1e-6) return grid_warp_nowhere;
-        vec2 go = vec2(slope[1].y * away.x - slope[1].x * away.y, slope[0].x * away.y - slope[0].y * away.x) / area;
+        vec2 newton_step = vec2(slope[1].y * away.x - slope[1].x * away.y, slope[0].x * away.y - slope[0].y * away.x) / area;
         // Long steps leave the part of the grid where the derivative says anything; outside all is straight.
         bool is_inside = all(greaterThan(t, vec2(0.0))) && all(lessThan(t, vec2(3.0)));
-        float far = length(go);
-        t += is_inside && far > 0.5 ? go * (0.5 / far) : go;
+        float step_length = length(newton_step);
+        t += is_inside && step_length > 0.5 ? newton_step * (0.5 / step_length) : newton_step;
         if (any(greaterThan(abs(t), vec2(1e4)))) return grid_warp_nowhere;
     }
     away = at - grid_warp_place(t, interpolation, across, down, slope);

@@ -29,11 +29,12 @@ vec2 lens_distortion_straighten(vec2 seen, vec3 radial, vec2 tangential, float f
     const int steps = 4, refinements = 4;
     vec2 p = vec2(0.0);
     for (int i = 0; i < steps + refinements; ++i) {
-        vec2 wanted = seen * min(float(i + 1) / float(steps), 1.0);
+        vec2 target = seen * min(float(i + 1) / float(steps), 1.0);
         mat2 slope = lens_distortion_slope(p, radial, tangential);
         if (determinant(slope) < 1e-3) return vec2(lens_distortion_nowhere);
-        p += inverse(slope) * (wanted - lens_distortion_bend(p, radial, tangential));
+        p += inverse(slope) * (target - lens_distortion_bend(p, radial, tangential));
     }
+    // Less slope is no inner branch; `missed` is in focal lengths: half a pixel for 500 pixels.
     float missed = distance(lens_distortion_bend(p, radial, tangential), seen);
     return missed < 1e-3 && length(p) < far && determinant(lens_distortion_slope(p, radial, tangential)) > 1e-3
          ? p : vec2(lens_distortion_nowhere);

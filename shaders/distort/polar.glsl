@@ -18,10 +18,10 @@ vec4 polar_wrap(float radius, float rotation, vec2 center, bool empty) {
     int n = footprint_samples(vec2(size.x / (polar_circle * far), 0.0), vec2(0.0, size.y / radius));
     vec4 sum = vec4(0.0);
     for (int i = 0; i < n * n; ++i) {
-        vec2 found = polar_of(at + footprint_at(i, n), radius, rotation, center);
-        if (empty && found.y > 1.0) continue;
-        found *= size;
-        sum += image_near(vec2(found.x, clamp(found.y, 0.5, size.y - 0.5)));
+        vec2 place = polar_of(at + footprint_at(i, n), radius, rotation, center);
+        if (empty && place.y > 1.0) continue;
+        place *= size;
+        sum += image_near(vec2(place.x, clamp(place.y, 0.5, size.y - 0.5)));
     }
     return finite(sum / float(n * n));
 }

@@ -57,9 +57,13 @@ float curvature_found(int reach) {
     return curvature_mean(across, down, turn_across, turn_down);
 }
 
+// The least cosine between a surface and the view: at 87 degrees. With half or twice the number no pixel of the
+// built-in scene `stage` changes.
+const float curvature_grazing = 0.05;
+
 // The vector on a surface, seen along `forward`, to the point that lies `beside` it in the picture.
 vec3 curvature_way(vec3 normal, vec3 beside, vec3 forward) {
-    return beside - forward * (dot(normal, beside) / min(dot(normal, forward), -0.05));
+    return beside - forward * (dot(normal, beside) / min(dot(normal, forward), -curvature_grazing));
 }
 
 float curvature_alone(int reach, vec3 right, vec3 down, vec3 forward) {

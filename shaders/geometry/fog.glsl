@@ -5,7 +5,8 @@
 float fog_mean(float x) { return x < 0.05 ? 1.0 - x * (0.5 - x * (1.0 / 6.0 - x / 24.0)) : (1.0 - exp(-x)) / x; }
 
 // Optical depth of an exponential layer of fog between two heights, in units of its thickness. It is computed from the
-// lower height, for both directions of view, so that no exponential overflows.
+// lower height, for both directions of view, so that no exponential overflows: exp(88) is the
+// largest that a float holds.
 float fog_layer(float density, float way, float from, float to) {
     return density * way * exp(clamp(-min(from, to), -80.0, 80.0)) * fog_mean(min(abs(to - from), 80.0));
 }

@@ -31,31 +31,31 @@ float geometry_edges_bends() {
 // picture depth is not compared.
 vec3 geometry_edges_found() {
     float id = ids_at(pixel);
-    vec3 normal = unit_normal(normal_at(pixel)), found = vec3(geometry_edges_bends(), 0.0, 0.0);
+    vec3 normal = unit_normal(normal_at(pixel)), differences = vec3(geometry_edges_bends(), 0.0, 0.0);
     for (int axis = 0; axis < 2; ++axis) {
         ivec2 along = axis == 0 ? ivec2(1, 0) : ivec2(0, 1), before = pixel - along, after = pixel + along;
-        found.y = max(found.y, geometry_edges_angle(unit_normal(normal_at(before)), normal));
-        found.y = max(found.y, geometry_edges_angle(unit_normal(normal_at(after)), normal));
-        if (ids_at(before) != id || ids_at(after) != id) found.z = 1.0;
+        differences.y = max(differences.y, geometry_edges_angle(unit_normal(normal_at(before)), normal));
+        differences.y = max(differences.y, geometry_edges_angle(unit_normal(normal_at(after)), normal));
+        if (ids_at(before) != id || ids_at(after) != id) differences.z = 1.0;
     }
-    return found;
+    return differences;
 }
 
-float geometry_edges_gap(vec3 found) { return found.x; }
+float geometry_edges_gap(vec3 differences) { return differences.x; }
 
-float geometry_edges_crease(vec3 found) { return degrees(found.y); }
+float geometry_edges_crease(vec3 differences) { return degrees(differences.y); }
 
-float geometry_edges_border(vec3 found) { return found.z; }
+float geometry_edges_border(vec3 differences) { return differences.z; }
 
-float geometry_edges_strength(float found, float threshold, float softness) {
-    return found > threshold ? clamp((found - threshold) / max(threshold * softness, 1e-9), 0.0, 1.0) : 0.0;
+float geometry_edges_strength(float difference, float threshold, float softness) {
+    return difference > threshold ? clamp((difference - threshold) / max(threshold * softness, 1e-9), 0.0, 1.0) : 0.0;
 }
 
 // The strongest line by depth, normals and ids.
-float geometry_edges_strongest(vec3 found, vec3 amounts, float gap, float crease, float softness) {
-    float depth = geometry_edges_strength(found.x, gap, softness);
-    float normal = geometry_edges_strength(found.y, crease, softness);
-    vec3 strength = amounts * vec3(depth, normal, found.z);
+float geometry_edges_strongest(vec3 differences, vec3 amounts, float gap, float crease, float softness) {
+    float depth = geometry_edges_strength(differences.x, gap, softness);
+    float normal = geometry_edges_strength(differences.y, crease, softness);
+    vec3 strength = amounts * vec3(depth, normal, differences.z);
     return max(max(strength.x, strength.y), strength.z);
 }
 
@@ -86,25 +86,25 @@ vec3 geometry_edges_pure(bool deep) {
     if (deep && near_at(pixel) <= 0.0) return vec3(0.0);
     Coverage shares = coverage_of(coverage_at(pixel));
     if (!coverage_is_sure(shares)) return mean;
-    vec3 one = coverage_normal(shares.front), other = coverage_normal(shares.back);
-    if (other != vec3(0.0) && length(mean - mix(other, one, shares.front_share)) > misfit) return mean;
+    vec3 front_normal = coverage_normal(shares.front), back_normal = coverage_normal(shares.back);
+    if (back_normal != vec3(0.0) && length(mean - mix(back_normal, front_normal, shares.front_share)) > misfit) return mean;
     vec2 apart = abs(near_at(pixel) - vec2(near_at(shares.front), near_at(shares.back)));
     bool front = deep && apart.x != apart.y ? apart.x < apart.y : shares.front_share > 0.5;
-    return front ? one : other;
+    return front ? front_normal : back_normal;
 }
 
 // How strong the seam between a pixel and the next one is. Depth bends on both sides of a step.
 float geometry_edges_seam(ivec2 at, int axis, vec3 amounts, float gap, float crease, float softness) {
     ivec2 along = axis == 0 ? ivec2(1, 0) : ivec2(0, 1), after = at + along;
     if (at[axis] < 0 || after[axis] >= extent[axis]) return 0.0;
-    vec3 found = vec3(0.0, geometry_edges_angle(unit_normal(normal_at(at)), unit_normal(normal_at(after))), ids_at(at) != ids_at(after));
+    vec3 differences = vec3(0.0, geometry_edges_angle(unit_normal(normal_at(at)), unit_normal(normal_at(after))), ids_at(at) != ids_at(after));
     float here = nearness(depth_at(at)), there = nearness(depth_at(after));
     float bend = 1e9;
     if (at[axis] > 0) bend = geometry_edges_bend(nearness(depth_at(at - along)), here, there);
     if (after[axis] < extent[axis] - 1)
         bend = min(bend, geometry_edges_bend(here, there, nearness(depth_at(after + along))));
-    found.x = bend < 1e9 ? bend : 0.0;
-    return geometry_edges_strongest(found, amounts, gap, crease, softness);
+    differences.x = bend < 1e9 ? bend : 0.0;
+    return geometry_edges_strongest(differences, amounts, gap, crease, softness);
 }
 
 // The seams to the right and below, and how strong a fold in depth is that runs through the middle of the pixel.

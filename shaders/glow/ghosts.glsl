@@ -2,7 +2,7 @@
 #include "lib/noise.glsl"
 #include "lib/shrinking.glsl"
 
-const int ghosts_most = 12;
+const int ghosts_most = 12;  // as many as have a magnification
 
 // Magnifications of the ghosts: negative ones lie on the other side of the axis. Their order is mixed, so that any
 // number of them looks varied. Chosen by eye.
@@ -54,7 +54,8 @@ vec4 ghosts_enlarge() { return enlarged(2); }
 
 vec4 ghosts_dirt(vec4 image, vec4 dirt) { return clamp(finite(dirt), 0.0, 65504.0); }
 
-// Out-of-focus discs of dust, one per cell, with random sizes and strengths; brighter at the rim.
+// Out-of-focus discs of dust, one per cell, with random sizes and strengths; brighter at the rim. All numbers of the dirt
+// are chosen by eye.
 float ghosts_dust(vec2 at, uint seed) {
     vec3 place = hash3(ivec3(floor(at), 0), uvec3(seed)), look = hash3(ivec3(floor(at), 1), uvec3(seed));
     float size = mix(0.08, 0.35, look.x * look.x);

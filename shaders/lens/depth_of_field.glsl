@@ -179,7 +179,7 @@ vec2 depth_of_field_eye(vec3 lens, ivec2 at) {
 
 // The area of a disc of radius 1 at this pixel; and that of a disc of any radius with its soft rim.
 float depth_of_field_unit(vec3 lens) {
-    float apart = min(length(depth_of_field_eye(lens, pixel)), 1.99);
+    float apart = min(length(depth_of_field_eye(lens, pixel)), 1.99);  // at 2 nothing would be left of the disc
     return lens.y * (2.0 * acos(0.5 * apart) - 0.5 * apart * sqrt(4.0 - apart * apart)) / radians(180.0);
 }
 
@@ -244,26 +244,26 @@ float depth_of_field_scattered(int tile, int aperture, vec3 lens, vec2 stretch, 
 // Combines levels in front of the focus: larger discs are nearer and cover first; smaller ones fill up what is left. No
 // pixel is covered more than once.
 void depth_of_field_near(
-    int tile, float finest, int aperture, vec3 lens, vec2 stretch, out vec4 made, out float covers
+    int tile, float finest, int aperture, vec3 lens, vec2 stretch, out vec4 light, out float covers
 ) {
     vec4 sum;
     float covered = depth_of_field_scattered(tile, aperture, lens, stretch, -1.0, sum);
     vec2 at = (vec2(pixel) + 0.5) / 2.0;
     float before = cover_near(at), part = min(depth_of_field_slack * covered, 1.0 - before);
-    made = light_near(at) + (covered > 0.0 ? sum * (part / covered) : vec4(0.0));
+    light = light_near(at) + (covered > 0.0 ? sum * (part / covered) : vec4(0.0));
     covers = min(before + depth_of_field_slack * covered, 1.0);
 }
 
 // Combines levels behind the focus: there the larger discs are farther away.
 void depth_of_field_far(
-    int tile, float finest, int aperture, vec3 lens, vec2 stretch, out vec4 made, out float covers
+    int tile, float finest, int aperture, vec3 lens, vec2 stretch, out vec4 light, out float covers
 ) {
     vec4 sum;
     float covered = depth_of_field_scattered(tile, aperture, lens, stretch, 1.0, sum);
     vec2 at = (vec2(pixel) + 0.5) / 2.0;
     float part = min(depth_of_field_slack * covered, 1.0), more = cover_near(at);
-    vec4 found = covered > 0.0 ? sum * (part / covered) : vec4(0.0);
-    made = found + (more > 0.0 ? light_near(at) * (min(more, 1.0 - part) / more) : vec4(0.0));
+    vec4 own = covered > 0.0 ? sum * (part / covered) : vec4(0.0);
+    light = own + (more > 0.0 ? light_near(at) * (min(more, 1.0 - part) / more) : vec4(0.0));
     covers = min(more + depth_of_field_slack * covered, 1.0);
 }
 

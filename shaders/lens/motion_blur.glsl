@@ -166,22 +166,22 @@ vec4 motion_blur_faster(vec4 a, vec4 b, vec2 times) {
 // The longest path of `count` pixels along an axis.
 vec4 motion_blur_fastest(int axis, int count, vec2 times) {
     ivec2 along = axis == 0 ? ivec2(1, 0) : ivec2(0, 1), first = pixel * (along * (count - 1) + 1);
-    vec4 found = paths_at(first);
-    for (int i = 1; i < count; ++i) found = motion_blur_faster(found, paths_at(first + i * along), times);
-    return found;
+    vec4 fastest = paths_at(first);
+    for (int i = 1; i < count; ++i) fastest = motion_blur_faster(fastest, paths_at(first + i * along), times);
+    return fastest;
 }
 
 // The longest path of a tile and its neighbors; diagonal neighbors count only if their path points here (Guertin 2014).
 vec4 motion_blur_around(vec2 times) {
-    vec4 found = tiles_at(pixel);
+    vec4 fastest = tiles_at(pixel);
     for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x) {
             vec4 other = tiles_at(pixel + ivec2(x, y));
             vec2 way = motion_blur_place(other, times.y) - motion_blur_place(other, times.x);
             if (x * y != 0 && abs(dot(way, vec2(x, y))) < length(way)) continue;
-            found = motion_blur_faster(found, other, times);
+            fastest = motion_blur_faster(fastest, other, times);
         }
-    return found;
+    return fastest;
 }
 
 // How much the paths within a tile differ from its longest one; then how much those of its neighbors differ from the
@@ -278,8 +278,8 @@ float motion_blur_between(MotionBlurRun run, int i, out ivec2 cell, out ivec2 si
 bool motion_blur_outside(ivec2 at) { return any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, image_size)); }
 
 // Empties a run that a pixel does not need. Its loop then ends at once, and the loop itself stays outside of a branch.
-MotionBlurRun motion_blur_only(bool wanted, MotionBlurRun run) {
-    run.last = wanted ? run.last : run.first - 1;
+MotionBlurRun motion_blur_only(bool is_needed, MotionBlurRun run) {
+    run.last = is_needed ? run.last : run.first - 1;
     return run;
 }
 
@@ -287,7 +287,7 @@ MotionBlurRun motion_blur_only(bool wanted, MotionBlurRun run) {
 vec4 motion_blur_box(MotionBlurRun run, vec2 times, vec4 here) {
     vec4 sum = vec4(0.0);
     float total = 0.0;
-    bool bent = length(run.path.zw - run.path.xy) > 0.1 * length(run.path);
+    bool bent = length(run.path.zw - run.path.xy) > 0.1 * length(run.path);  // half or twice changes no preset
     MotionBlurRun even = motion_blur_only(!bent, run);
     for (int i = even.first; i <= even.last; ++i) {
         ivec2 cell, side;

@@ -33,21 +33,21 @@ AreaSurface area_surface(vec3 normal, vec3 view, float nv, float roughness) {
     float last = float(AREA_CELLS - 1);
     vec2 cell = vec2(roughness, sqrt(1.0 - nv)) * last + 0.5;
     vec4 parts = cosines_near(cell);
-    AreaSurface made;
-    made.frame = transpose(mat3(side, cross(normal, side), normal));
-    made.lobe = mat3(parts.x, 0.0, parts.z, 0.0, 1.0, 0.0, parts.y, 0.0, parts.w);
-    made.back = inverse(made.lobe * made.frame);
-    made.share = cosines_near(cell + vec2(0.0, AREA_CELLS)).x;
-    made.view = view;
-    return made;
+    AreaSurface surface;
+    surface.frame = transpose(mat3(side, cross(normal, side), normal));
+    surface.lobe = mat3(parts.x, 0.0, parts.z, 0.0, 1.0, 0.0, parts.y, 0.0, parts.w);
+    surface.back = inverse(surface.lobe * surface.frame);
+    surface.share = cosines_near(cell + vec2(0.0, AREA_CELLS)).x;
+    surface.view = view;
+    return surface;
 }
 
 // The light of a row of the table, from a place in the world. Its radiance is 0 where it does not shine.
 AreaLight area_light(int row, vec3 place) {
     vec4 origin = areas_at(ivec2(0, row)), glow = areas_at(ivec2(1, row));
-    vec4 one = areas_at(ivec2(2, row)), other = areas_at(ivec2(3, row));
+    vec4 first_axis = areas_at(ivec2(2, row)), second_axis = areas_at(ivec2(3, row));
     AreaLight lamp;
-    lamp.kind = int(glow.w), lamp.middle = origin.xyz - place, lamp.along = one.xyz, lamp.across = other.xyz;
+    lamp.kind = int(glow.w), lamp.middle = origin.xyz - place, lamp.along = first_axis.xyz, lamp.across = second_axis.xyz;
     lamp.deep = vec3(0.0), lamp.arc = 0.0, lamp.far = ivec2(0);
     float reach = dot(lamp.middle, lamp.middle) * origin.w, window = max(1.0 - reach * reach, 0.0);
     lamp.radiance = glow.rgb * window * window;
@@ -55,8 +55,8 @@ AreaLight area_light(int row, vec3 place) {
         if (dot(cross(lamp.along, lamp.across), lamp.middle) >= 0.0) lamp.radiance = vec3(0.0);
         return lamp;
     }
-    float half_length = one.w, radius = other.w;
-    vec3 axis = one.xyz / half_length;
+    float half_length = first_axis.w, radius = second_axis.w;
+    vec3 axis = first_axis.xyz / half_length;
     float at = -dot(lamp.middle, axis);
     vec3 away = lamp.middle + at * axis;
     float apart = length(away);

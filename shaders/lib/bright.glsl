@@ -12,7 +12,7 @@ float bright_hard(float light, float threshold) { return light > threshold ? lig
 float bright_soft(float light, float threshold, float knee) {
     float above = light - threshold, width = threshold * knee;
     float eased = clamp(above + width, 0.0, 2.0 * width);
-    return max(eased * eased / (4.0 * width + 1e-5), above);
+    return max(eased * eased / (4.0 * width + BRIGHT_NONE), above);
 }
 
 // Keeps all light far above the threshold and little of the light below it.

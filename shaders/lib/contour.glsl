@@ -49,8 +49,8 @@ float contour_distance(vec2 here, float most) {
             int x = pixel.x + side * away;
             if (x < 0 || x >= extent.x) continue;
             vec2 rows = columns_at(ivec2(x, pixel.y));
-            float row = mine ? rows.y : rows.x, up = row - float(pixel.y), found = float(away * away) + up * up;
-            if (row >= 0.0 && found < nearest) nearest = found, seed = ivec2(x, row);
+            float row = mine ? rows.y : rows.x, up = row - float(pixel.y), distance_squared = float(away * away) + up * up;
+            if (row >= 0.0 && distance_squared < nearest) nearest = distance_squared, seed = ivec2(x, row);
         }
     float far = sqrt(nearest);
     if (seed.x >= 0)

@@ -17,6 +17,9 @@ const float DENOISE_REACH = 1.0;
 // Of the luminance: less contrast is never noise. With half or twice the number no pixel of wet_floor changes by
 // 1 / 255.
 const float DENOISE_LEAST = 1e-3;
+// The least cosine by which a reflection counts as narrower across: at 87 degrees. With half or twice the number no pixel
+// of wet_floor changes by 1 / 255.
+const float DENOISE_GRAZING = 0.05;
 
 // What a pixel needs of itself to compare others with it.
 struct Denoised { vec4 guide, light; vec3 place, spread; vec2 up; float squeeze, apart; };
@@ -31,7 +34,7 @@ Denoised denoise_here(const vec4 rays[3]) {
     float facing = abs(dot(guide.xyz, normalize(place)));
     up = dot(up, up) > 1e-12 ? normalize(up) : vec2(0.0, 1.0);
     float apart = pixel_pitch(rays, depth, vec2(extent));
-    return Denoised(guide, light_at(pixel), place, spread_at(pixel), up, 1.0 / max(facing, 0.05), apart);
+    return Denoised(guide, light_at(pixel), place, spread_at(pixel), up, 1.0 / max(facing, DENOISE_GRAZING), apart);
 }
 
 // How far a pixel is, in pixels of the blur along its longer side: reflections at grazing angles are narrower across.
@@ -90,6 +93,7 @@ void denoise_level(const vec4 rays[3], int stride, float contrast, out vec4 ligh
     Denoised here = denoise_here(rays);
     light = here.light, spread = here.spread;
     if (here.guide.w <= 0.0 || spread.y <= float(stride)) return;
+    // The weights of a binomial filter: 4 in the middle, 2 beside it, 1 at the corners.
     float bright = luminance(here.light.rgb), total = 4.0, variance = 16.0 * here.spread.x;
     vec4 sum = 4.0 * here.light;
     for (int i = 0; i < 9; ++i) {

@@ -28,15 +28,17 @@ bool is_mixed(vec3 normal) { return length(normal) < GEOMETRY_WHOLE; }
 
 // The relative growth of nearness from one pixel to the next, from the pixels one and two steps before and after.
 // Nearness is linear on planes: the side where it bends far more than on the other belongs to another surface.
-float nearness_slope(float here, vec2 one, vec2 two) {
+float nearness_slope(float here, vec2 next_to, vec2 beyond) {
     const float most = 1e9, rounding = 1e-6;
-    if (one.x <= 0.0 && one.y <= 0.0) return 0.0;
-    one = min(one / here, most), two = min(two / here, most);
-    vec2 bend = abs(two - 2.0 * one + 1.0);
-    bend = mix(bend, abs(one - 1.0), equal(two, vec2(0.0))) + rounding;
+    if (next_to.x <= 0.0 && next_to.y <= 0.0) return 0.0;
+    next_to = min(next_to / here, most), beyond = min(beyond / here, most);
+    vec2 bend = abs(beyond - 2.0 * next_to + 1.0);
+    bend = mix(bend, abs(next_to - 1.0), equal(beyond, vec2(0.0))) + rounding;
+    // Where one side has less than a tenth of the bend, it alone counts, else both. A choice: with steps that are a fifth
+    // wider 0.3 % of the pixels of the preset wet_floor change by more than 1 / 255.
     float before = bend.x / (bend.x + bend.y);
     float after = 0.5 * (smoothstep(0.1, 0.35, before) + smoothstep(0.65, 0.9, before));
-    if (one.x <= 0.0) after = 1.0;
-    if (one.y <= 0.0) after = 0.0;
-    return mix(1.0 - one.x, one.y - 1.0, after);
+    if (next_to.x <= 0.0) after = 1.0;
+    if (next_to.y <= 0.0) after = 0.0;
+    return mix(1.0 - next_to.x, next_to.y - 1.0, after);
 }

@@ -2,7 +2,7 @@
 #include "lib/shadow.glsl"
 
 const int LAMP_SUN = 0, LAMP_BALL = 1, LAMP_DISC = 2;  // others are rectangles, from the middle along two half axes
-const float LAMP_ENDLESS = 1e8;
+const float LAMP_ENDLESS = 1e8;  // units of the scene: the distance of a sun
 
 // The way from a place to a random point of a light, and as w the distance.
 vec4 lamp_way(int row, vec3 place, vec2 random) {

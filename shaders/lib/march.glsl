@@ -5,7 +5,7 @@
 #include "lib/camera.glsl"
 #include "lib/geometry.glsl"
 
-const int MARCH_LEVELS = 3;
+const int MARCH_LEVELS = 3;  // cells of 4, 16 and 64 pixels
 // Rays start in front of the surface by this part of the depth: a choice between surfaces that shade themselves and gaps
 // at contacts. Half or twice the number changes up to 3 % of the pixels of contact_shadows on the sample frame by more
 // than 1 / 255.
@@ -14,7 +14,10 @@ const float MARCH_NUDGE = 1e-3;    // pixels: a step beyond a border, into the n
 // Pixels: how far a ray moves into an object after it met its edge, whose pixels mix two surfaces. The preset wet_floor
 // depends on it: with 1 or 4, a tenth of its pixels change by more than 1 / 255.
 const float MARCH_INSIDE = 2.0;
-const float MARCH_ENDLESS = 1e18;
+const float MARCH_ENDLESS = 1e18;  // beyond all pictures; its square is still a float
+// The sine of the angle by which a ray leaves the plane of its pixel at least: a tenth of a degree. With half or twice the
+// number no pixel of wet_floor changes by 1 / 255.
+const float MARCH_OUT = 2e-3;
 
 struct March {
     vec2 from, pace;   // start position in pixels, and its change with `at`
@@ -159,12 +162,12 @@ vec4 march_planes() {
     vec2 slope;
     for (int axis = 0; axis < 2; ++axis) {
         ivec2 next = axis == 0 ? ivec2(1, 0) : ivec2(0, 1);
-        vec2 one = vec2(nearness(depth_at(pixel - next)), nearness(depth_at(pixel + next)));
-        vec2 two = vec2(nearness(depth_at(pixel - 2 * next)), nearness(depth_at(pixel + 2 * next)));
-        slope[axis] = nearness_slope(here, one, two);
+        vec2 next_to = vec2(nearness(depth_at(pixel - next)), nearness(depth_at(pixel + next)));
+        vec2 beyond = vec2(nearness(depth_at(pixel - 2 * next)), nearness(depth_at(pixel + 2 * next)));
+        slope[axis] = nearness_slope(here, next_to, beyond);
         // A surface that bends as much as it slopes on both sides is an edge, or thinner than a pixel: it counts as
         // facing the camera.
-        vec2 bend = mix(abs(two - 2.0 * one + here), abs(one - here), equal(two, vec2(0.0))) / here;
+        vec2 bend = mix(abs(beyond - 2.0 * next_to + here), abs(next_to - here), equal(beyond, vec2(0.0))) / here;
         slope[axis] *= clamp(2.0 - min(bend.x, bend.y) / max(abs(slope[axis]), 1e-9), 0.0, 1.0);
     }
     return vec4(here * vec3(1.0, slope), 0.0);
@@ -173,15 +176,15 @@ vec4 march_planes() {
 // The largest nearness of the planes in 4 x 4 pixels, and the smallest of the backs of objects; the background counts
 // as 0.
 vec4 march_bounds() {
-    vec2 found = vec2(0.0, 1e30);
+    vec2 bounds = vec2(0.0, 1e30);
     for (int i = 0; i < 16; ++i) {
         ivec2 at = 4 * pixel + ivec2(i & 3, i >> 2);
         if (any(greaterThanEqual(at, planes_size))) continue;
         vec4 plane = planes_at(at);
         float most = 0.5 * (abs(plane.y) + abs(plane.z)), back = max(plane.x - most, 0.0);
-        found = vec2(max(found.x, plane.x + most), min(found.y, back / (1.0 + plane.w * back)));
+        bounds = vec2(max(bounds.x, plane.x + most), min(bounds.y, back / (1.0 + plane.w * back)));
     }
-    return vec4(found, 0.0, 0.0);
+    return vec4(bounds, 0.0, 0.0);
 }
 
 // The last draw, which reads `planes` and `bounds`: all levels in one picture.
@@ -193,15 +196,15 @@ vec4 march_surfaces() {
     while (level < MARCH_LEVELS && cell.x >= march_cells(size, level).x) cell.x -= march_cells(size, level++).x;
     if (any(greaterThanEqual(cell, march_cells(size, level)))) return vec4(0.0);
     int side = 1 << (2 * (level - 1));
-    vec2 found = vec2(0.0, 1e30);
+    vec2 joined = vec2(0.0, 1e30);
     for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x) {
             ivec2 at = side * cell + ivec2(x, y);
             if (any(greaterThanEqual(at, bounds_size))) continue;
             vec2 bound = bounds_at(at).xy;
-            found = vec2(max(found.x, bound.x), min(found.y, bound.y));
+            joined = vec2(max(joined.x, bound.x), min(joined.y, bound.y));
         }
-    return vec4(found, 0.0, 0.0);
+    return vec4(joined, 0.0, 0.0);
 }
 
 // Follows a ray through the picture `surfaces`, in at most `steps` steps. True where it meets a surface, and where it
@@ -232,6 +235,5 @@ vec3 march_normal(const vec4 rows[3], ivec2 at, ivec2 size) {
 
 // Bends a direction out of the plane of a pixel: with smoothed normals, rays could start below the surface.
 vec3 march_out(vec3 way, vec3 plane) {
-    const float least = 2e-3;
-    return normalize(way + max(least - dot(way, plane), 0.0) * plane);
+    return normalize(way + max(MARCH_OUT - dot(way, plane), 0.0) * plane);
 }

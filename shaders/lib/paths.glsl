@@ -9,7 +9,8 @@
 
 const int PATH_TILE = 16, PATH_SEGMENTS = 8, PATH_BITS = 24, PATH_BLOCK = 16;
 const float PATH_RADIUS = 11.314;  // from the middle of a tile to its corners
-const float PATH_FAR = 1e18;
+const float PATH_FAR = 1e18;  // beyond all pictures; its square is still a float
+const float PATH_ROUNDING = 0.01;  // pixels: floats of 32 bits are exact to this up to 131,072 pixels
 
 // Where a span, or a channel of spans, is in its table.
 ivec2 path_cell(int number) { return ivec2(number % PATH_BLOCK, number / PATH_BLOCK); }
@@ -26,7 +27,7 @@ vec4 path_boxes() {
         vec2 place = points_at(path_point_cell(span, number)).xy;
         low = min(low, place), high = max(high, place);
     }
-    return vec4(low - 0.01, high + 0.01);
+    return vec4(low - PATH_ROUNDING, high + PATH_ROUNDING);
 }
 
 // The end of a segment of a span that starts at point `number`: after the last one follows another span.
@@ -67,7 +68,7 @@ bool path_crosses(int span, vec4 box, ivec2 tile) {
     vec2 start = points_at(path_point_cell(span, 0)).xy;
     for (int number = 1; number <= PATH_SEGMENTS; ++number) {
         vec2 end = path_end(span, number).xy;
-        if (path_touches(vec4(min(start, end) - 0.01, max(start, end) + 0.01), tile)) return true;
+        if (path_touches(vec4(min(start, end) - PATH_ROUNDING, max(start, end) + PATH_ROUNDING), tile)) return true;
         start = end;
     }
     return false;
@@ -324,8 +325,8 @@ vec2 path_distance(int rows, int groups, int parts, float reach) {
             int channel = part * PATH_BITS + findLSB(used);
             for (uint bits = path_bits(tile, channel, rows); bits != 0u; bits &= bits - 1u) {
                 int number = channel * PATH_BITS + findLSB(bits);
-                vec2 found = path_chord(chords_at(path_chord_cell(number, 0)), place);
-                if (found.x < nearest.x) nearest = vec3(found.x, number, found.y);
+                vec2 chord = path_chord(chords_at(path_chord_cell(number, 0)), place);
+                if (chord.x < nearest.x) nearest = vec3(chord.x, number, chord.y);
             }
         }
     if (nearest.y < 0.0) return vec2(reach, 0.0);

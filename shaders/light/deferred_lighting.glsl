@@ -6,6 +6,7 @@
 #include "lib/coverage.glsl"
 #include "lib/finite.glsl"
 #include "lib/geometry.glsl"
+#include "lib/light_cookie.glsl"
 #include "lib/light_shadow.glsl"
 #include "lib/solid.glsl"
 #include "lib/working.glsl"
@@ -162,8 +163,8 @@ bool deferred_lighting_part(int k, bool mixed, Coverage shares, vec4 color, cons
 LitMaterial deferred_lighting_material(
     LitPart part, bool mapped, float metal, float roughness, float specular, bool seen, vec3 eye
 ) {
-    LitMaterial made;
-    made.color = straight(part.color);
+    LitMaterial lit;
+    lit.color = straight(part.color);
     vec2 material = clamp(mapped ? finite(material_at(part.at)) : vec2(metal, roughness), 0.0, 1.0);
 
     LitSurface surface;
@@ -172,10 +173,11 @@ LitMaterial deferred_lighting_material(
     surface.mirror = reflect(-surface.view, part.normal);
     surface.nv = clamp(dot(part.normal, surface.view), 1e-4, 1.0);
     surface.alpha = max(material.y * material.y, DEFERRED_LIGHTING_SMOOTH);
-    surface.f0 = mix(vec3(0.08 * specular), made.color.rgb, material.x);
-    made.scatter = made.color.rgb * (1.0 - material.x);
-    made.surface = surface;
-    return made;
+    // Of non-metals up to 8 % are reflected, as in Disney's model (Burley 2012): 4 % at 0.5.
+    surface.f0 = mix(vec3(0.08 * specular), lit.color.rgb, material.x);
+    lit.scatter = lit.color.rgb * (1.0 - material.x);
+    lit.surface = surface;
+    return lit;
 }
 
 // `share` scales diffuse (x) and specular light (y).
@@ -224,7 +226,7 @@ vec4 deferred_lighting_areas(
     return finite(before);
 }
 
-// Adds lights that a mask limits, each by a channel: first `lamps`, then `count` areas.
+// Adds lights that a mask limits, each by a channel: first `lamps`, which may have cookies, then `count` areas.
 vec4 deferred_lighting_limited(
     int model, int lamps, int count, vec2 share, bool mapped, float metal, float roughness, float specular,
     const vec4 rays[3], bool seen, vec3 eye
@@ -239,10 +241,12 @@ vec4 deferred_lighting_limited(
         LitSurface surface = material.surface;
         vec4 mask = mask_at(part.at);
         vec3 fallen = vec3(0.0), mirrored = vec3(0.0);
+        float pitch = seen ? pixel_pitch(rays, 1.0 / place_at(part.at).w, vec2(extent)) : 0.0;
         for (int light = 0; light < lamps; ++light) {
             vec3 matte = vec3(0.0), shiny = vec3(0.0);
             deferred_lighting_add(model, light, surface, matte, shiny);
-            fallen += mask[light] * matte / BRDF_PI, mirrored += mask[light] * shiny;
+            vec3 through = mask[light] * cookie_color(light, surface.place, pitch);
+            fallen += through * matte / BRDF_PI, mirrored += through * shiny;
         }
         AreaSurface lobes = area_surface(surface.normal, surface.view, surface.nv, sqrt(surface.alpha));
         for (int light = 0; light < count; ++light) {

@@ -124,9 +124,9 @@ void screen_reflections_scattered(
         vec4 met = screen_reflections_ray(
             rows, frame * way.xyz, plane, thickness, longest, fade, border, sky, steps
         );
-        vec4 found = screen_reflections_met(rays, met, way.w);
-        float bright = luminance(found.rgb);
-        light += weight * found;
+        vec4 reflected = screen_reflections_met(rays, met, way.w);
+        float bright = luminance(reflected.rgb);
+        light += weight * reflected;
         squares += weight * bright * bright;
         float shine = weight * met.w * (abs(bright) + 1e-3);
         away += shine * met.z / (depth + met.z);

@@ -41,8 +41,8 @@ vec3 histogram_count(int block) {
     ivec2 end = min((pixel + 1) * block, light_size);
     for (int y = pixel.y * block; y < end.y; ++y)
         for (int x = pixel.x * block; x < end.x; ++x) {
-            vec2 found = light_at(ivec2(x, y));
-            sum += found.y * vec3(lessThanEqual(vec3(found.x), middle));
+            vec2 measured = light_at(ivec2(x, y));
+            sum += measured.y * vec3(lessThanEqual(vec3(measured.x), middle));
         }
     return sum;
 }

@@ -26,12 +26,12 @@ float depth_merge_share(float value, vec2 slope) {
 
 void depth_merge(bool antialias, out vec4 result, out float depth) {
     float lead = depth_merge_lead(pixel), share = lead > 0.0 ? 1.0 : 0.0;
-    vec4 one = finite(a_at(pixel)), two = finite(b_at(pixel));
+    vec4 first = finite(a_at(pixel)), second = finite(b_at(pixel));
     if (antialias) {
         vec2 slope = vec2(depth_merge_slope(lead, ivec2(1, 0)), depth_merge_slope(lead, ivec2(0, 1)));
         share = depth_merge_share(lead, slope);
     }
-    vec4 front = one + two * (1.0 - clamp(one.a, 0.0, 1.0)), back = two + one * (1.0 - clamp(two.a, 0.0, 1.0));
+    vec4 front = first + second * (1.0 - clamp(first.a, 0.0, 1.0)), back = second + first * (1.0 - clamp(second.a, 0.0, 1.0));
     result = finite(mix(back, front, share));
     float near = max(nearness(a_depth_at(pixel)), nearness(b_depth_at(pixel)));
     depth = near > 0.0 ? 1.0 / near : GEOMETRY_NOTHING;

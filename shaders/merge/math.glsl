@@ -27,7 +27,7 @@ float math(float a, int operation, float b, float c) {
     if (operation == OPERATION_ROUND) result = floor(a + 0.5);
     if (operation == OPERATION_FRACTION) result = fract(a);
     if (operation == OPERATION_SQUARE_ROOT) result = sqrt(max(a, 0.0));
-    if (operation == OPERATION_EXPONENTIAL) result = exp(min(a, 88.0));
+    if (operation == OPERATION_EXPONENTIAL) result = exp(min(a, 88.0));  // the largest that a float holds
     if (operation == OPERATION_LOGARITHM) result = a > 0.0 ? log(a) : 0.0;
     if (operation == OPERATION_SINE) result = sin(a);
     if (operation == OPERATION_COSINE) result = cos(a);

@@ -2,7 +2,7 @@
 #include "lib/finite.glsl"
 #include "lib/hash.glsl"
 
-const float film_grain_middle = 0.18;
+const float film_grain_middle = 0.18;  // middle gray
 const float film_grain_width = 0.55;  // the integral of the squared quadratic B-spline: 1 / the width of a clump
 
 // Normally distributed numbers, mean 0 and variance 1, in clumps: nine cells under a quadratic B-spline.

@@ -67,7 +67,7 @@ vec4 kuwahara_sectors(int kind, float radius, float sharpness) {
                 v = eighth * v;
             }
             vec4 other = tones_at(pixel + ivec2(x, y)) - here;
-            float weight = exp(-3.125 * square) / share;
+            float weight = exp(-3.125 * square) / share;  // a Gaussian whose sigma is 0.4 of the radius
             for (int k = 0; k < 8; ++k) {
                 sums[k] += weight * shares[k] * other;
                 squares[k] += weight * shares[k] * dot(other.rgb, other.rgb);

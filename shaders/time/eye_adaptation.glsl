@@ -18,7 +18,7 @@ float eye_adaptation_given(float luminance) {
 }
 
 float eye_adaptation_follow(float seen, float before, float passed, int model, vec2 times, int scale, float nits) {
-    float rods = 0.04 / (0.04 + seen * nits);
+    float rods = 0.04 / (0.04 + seen * nits);  // their share at a luminance in cd/m2 (Krawczyk et al. 2005)
     float time = mix(eye_adaptation_cones, eye_adaptation_rods, rods);
     if (model == MODEL_CUSTOM) time = seen > before ? times.x : times.y;
     float kept = time > 0.0 ? exp(-passed / time) : 0.0;

@@ -34,8 +34,8 @@ vec2 auto_exposure_place(vec2 light) {
 vec4 auto_exposure_row(int first, int end) {
     vec4 bins = float(4 * pixel.x) + vec4(0.0, 1.0, 2.0, 3.0), sum = vec4(0.0);
     for (int x = first; x < end; ++x) {
-        vec2 found = place_at(ivec2(x, pixel.y));
-        sum += found.y * max(1.0 - abs(found.x - bins), 0.0);
+        vec2 placed = place_at(ivec2(x, pixel.y));
+        sum += placed.y * max(1.0 - abs(placed.x - bins), 0.0);
     }
     return sum;
 }
@@ -72,8 +72,8 @@ float auto_exposure_stops(
 ) {
     if (average <= 0.0) return compensation;
     if (auto_key) key = natural_key(average * nits);
-    float wanted = metering == METERING_MAXIMUM ? 1.0 : key;
-    return clamp(log2(wanted / average), minimum, maximum) + compensation;
+    float target = metering == METERING_MAXIMUM ? 1.0 : key;
+    return clamp(log2(target / average), minimum, maximum) + compensation;
 }
 
 vec4 auto_exposure(vec4 image, float exposure) { return finite(vec4(finite(image.rgb) * exp2(exposure), image.a)); }

@@ -46,7 +46,7 @@ vec3 looked_at(vec4 c, vec2 at) {
 vec3 looked_at(vec4 c, vec2 at) {
     bool opaque = channels != COLOR || c.a >= 1.0;
 #if VIEWED
-    vec3 shown = texelFetch(viewed, ivec2((at - a_origin) * a_step) - viewed_first, 0).rgb;
+    vec3 shown = texelFetch(viewed, ivec2(floor((at - a_origin) * a_step)) - viewed_first, 0).rgb;
 #else
     vec3 shown = seen(c);
 #endif
@@ -54,32 +54,37 @@ vec3 looked_at(vec4 c, vec2 at) {
 }
 #endif
 
-vec3 warned(vec3 shown, Sampled found, vec2 at) {
-    if (nonfinite && found.broken) return vec3(1.0, 0.0, 1.0);
+vec3 warned(vec3 shown, Sampled texel, vec2 at) {
+    if (nonfinite && texel.broken) return vec3(1.0, 0.0, 1.0);
     if (!clipping || fract((at.x + at.y) / 8.0) >= 0.5) return shown;
-    vec3 c = meaning == IMAGE ? chosen(found.value)
-        : meaning == NORMAL ? found.value.rgb * 0.5 + 0.5 : (found.value.rgb - range.x) / (range.y - range.x);
+    vec3 c = meaning == IMAGE ? chosen(texel.value)
+        : meaning == NORMAL ? texel.value.rgb * 0.5 + 0.5 : (texel.value.rgb - range.x) / (range.y - range.x);
     if (largest(c) > 1.0) return vec3(1.0, 0.15, 0.1);
     return smallest(c) < 0.0 ? vec3(0.1, 0.35, 1.0) : shown;
 }
 
 void main() {
     vec2 at = gl_FragCoord.xy;
-    Sampled found = sampled(a, a_part, a_origin, a_step, a_channels, at);
+    Sampled texel = sampled(a, a_part, a_origin, a_step, a_channels, at);
+    bool dimmed = beyond_frame(a_part, a_origin, a_step, at);
 #if COMPARE == COMPARE_WIPE
     float across = dot(at - wipe_point, wipe_normal);
-    if (across > 0.0) found = sampled(b, b_part, b_origin, b_step, b_channels, at);
+    if (across > 0.0) {
+        texel = sampled(b, b_part, b_origin, b_step, b_channels, at);
+        dimmed = beyond_frame(b_part, b_origin, b_step, at);
+    }
 #elif COMPARE == COMPARE_DIFFERENCE
     Sampled other = sampled(b, b_part, b_origin, b_step, b_channels, at);
-    found.value = vec4(abs(found.value.rgb - other.value.rgb), channels == ALPHA ? abs(found.value.a - other.value.a) : 1.0);
-    found.broken = found.broken || other.broken;
-    found.inside = found.inside || other.inside;
+    texel.value = vec4(abs(texel.value.rgb - other.value.rgb), channels == ALPHA ? abs(texel.value.a - other.value.a) : 1.0);
+    texel.broken = texel.broken || other.broken;
+    texel.inside = texel.inside || other.inside;
+    dimmed = dimmed && beyond_frame(b_part, b_origin, b_step, at);
 #endif
-    if (meaning == IMAGE) found.value.rgb *= exposure;
-    vec3 shown = looked_at(found.value, at);
-    shown = warned(shown, found, at);
-    if (any(lessThan(at, region.xy)) || any(greaterThan(at, region.zw))) shown *= 0.35;
-    if (!found.inside) shown = surround;
+    if (meaning == IMAGE) texel.value.rgb *= exposure;
+    vec3 shown = looked_at(texel.value, at);
+    shown = warned(shown, texel, at);
+    if (dimmed || any(lessThan(at, region.xy)) || any(greaterThan(at, region.zw))) shown *= 0.35;
+    if (!texel.inside) shown = surround;
 #if COMPARE == COMPARE_WIPE
     if (abs(across) < 0.5) shown = vec3(1.0);
 #endif

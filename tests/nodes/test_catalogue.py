@@ -60,7 +60,8 @@ def test_shader_names_do_not_clash(name):
     assert [*find_file_faults(name, SHADERS)] == []
     for function in load_library().texts[name].all_functions:
         if not name.startswith(("lib/", "primitive/")):
-            assert re.match(rf"{name.rpartition('/')[2]}(_|$)", function.name), function.name
+            id = name.rpartition("/")[2]
+            assert re.match(rf"{id}(_|$)", function.name), f"call '{function.name}' '{id}_{function.name}'"
 
 
 @pytest.mark.parametrize("name", SHADERS)

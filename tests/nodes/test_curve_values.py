@@ -27,7 +27,7 @@ def test_declarations():
 
 
 def test_a_list_of_any_length_must_say_what_it_is():
-    with pytest.raises(TypeError, match="'many': a list of any length is a Curve, a ColorRamp or a Spline"):
+    with pytest.raises(TypeError, match="'many': a list of any length is a Curve, a ColorRamp, a Spline or a Stroke"):
         type("Wrong", (Filter,), {"__annotations__": {"many": tuple[float, ...]}, "many": (0.0,), "image": Image()})
 
 

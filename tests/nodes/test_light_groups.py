@@ -19,7 +19,8 @@ NAMES = {
     "Blender": ("ViewLayer.Combined", "ViewLayer.Combined_{}", {"Software": "Blender 5.0.1"}),
     "Arnold": ("", "RGBA_{}", {"arnold/version": "7.2"}),
     "V-Ray": ("", "VRayLightSelect_{}", {}),
-    "Karma": ("C", "Beauty_{}", {}),
+    "Karma": ("C", "C_{}", {"Software": "karma 21.0"}),
+    "others": ("C", "Beauty_{}", {}),
 }
 
 
