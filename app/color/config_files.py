@@ -9,7 +9,6 @@ the sandbox and refuses special files, since OpenColorIO would wait for a FIFO.
 from __future__ import annotations
 
 import re
-import zlib
 from collections.abc import Iterator
 from functools import cache
 from io import BytesIO
@@ -78,7 +77,9 @@ def _check_length(source: str, text: str) -> None:
 
 def _check_archive(source: str, content: bytes) -> None:
     """Raise InputError for an archive with a config or a table that OpenColorIO would read for ever."""
-    from zipfile import BadZipFile, ZipFile  # slow to import, and few configs are archives
+    from zipfile import ZipFile  # slow to import, and few configs are archives
+
+    from ..resources.archives import DAMAGED_ARCHIVE
 
     try:
         with ZipFile(BytesIO(content)) as archive:
@@ -89,7 +90,7 @@ def _check_archive(source: str, content: bytes) -> None:
                         _check_length(source, (head + file.read(1000 * MAX_NAMES + 1)).decode(errors="replace"))
                     elif _is_cinespace(head) and (fault := find_table_fault(head + file.read())):
                         raise InputError(f"{source}: its table {entry.filename} {fault}")
-    except (BadZipFile, NotImplementedError, RuntimeError, EOFError, zlib.error) as error:
+    except DAMAGED_ARCHIVE as error:
         raise InputError(f"{source}: is no archive that can be read: {error}") from None
 
 
@@ -120,7 +121,7 @@ def _is_cinespace(head: bytes) -> bool:
 def find_config_fault(config: Any, sandbox: Sandbox) -> str:
     """Why a config may not be used, as the rest of a sentence; "" if it may be used."""
     for table in _find_tables(config) if sandbox.root else ():
-        if reason := sandbox.fault(table):
+        if reason := sandbox.find_read_fault(table):
             return f"its table {table} {reason}"
     return ""
 
@@ -165,7 +166,7 @@ def _define_sandboxed_files() -> type[Any]:
         def getFastLutFileHash(self, path: str) -> str:
             """A mark of the version of a file; "" for one that is not there or may not be read."""
             try:
-                is_file = bool(self._sandbox.fault(path)) or (Path(path).exists() and not Path(path).is_dir())
+                is_file = bool(self._sandbox.find_read_fault(path)) or (Path(path).exists() and not Path(path).is_dir())
                 return fingerprint(path, self._sandbox) if is_file else ""
             except (OSError, ValueError):
                 return ""

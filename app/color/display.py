@@ -102,7 +102,9 @@ def _match_name(name: str, choices: tuple[str, ...], noun: str) -> str:
     if len(matches) == 1:
         return matches[0]
     folded = {key: choice for choice in choices for key in (choice.casefold(), choice.casefold().split()[0])}
-    close_names = difflib.get_close_matches(word, folded, 1, 0.4)
+    close_names = difflib.get_close_matches(
+        word, folded, 1, 0.4
+    )  # chosen by judgement: below difflib's 0.6, as one letter counts much in a short name
     hint = f"did you mean '{folded[close_names[0]]}'? Choose" if close_names else "choose"
     raise UsageError(f"there is no {noun} '{name}': {hint} from {', '.join(choices)}")
 

@@ -20,6 +20,7 @@ from halation import shaders
 from .transforms import Array
 
 _SIDE = 64
+"""Pixels of a side of the table in lib/blue_noise.glsl, which has 64 x 64 ranks of 8 bits."""
 _STRENGTH = 0.9
 """The range of thresholds in codes. With 1, rounding errors would change exact codes: pixels of 16 bits between passes
 are off by at most 0.042 codes (the rounding of half floats through the sRGB curve), so 0.05 codes on both sides stay

@@ -77,7 +77,7 @@ class Encoding(Struct, frozen=True):
             for channel in range(3):  # the same for all: gray stays gray. Numpy adds four times as fast one by one
                 encoded[..., channel] += noise
         codes = quantize(encoded, bits)
-        return np.rint(codes * (65535 / 1023)).astype(np.uint16) if bits == 10 else codes
+        return np.rint(codes * (65535 / 1023)).astype(np.uint16) if bits == 10 else codes  # white stays white
 
     def dithers(self, is_data: bool = False) -> bool:
         """True if numbers are dithered where they are rounded to 10 bits or fewer."""

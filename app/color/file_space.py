@@ -31,6 +31,9 @@ CHROMATICITIES = {
 
 
 _FILM_TAGS = ("kodaklog", "cineon")
+_SAME_PRIMARIES = 1e-3
+"""How far chromaticities may be from those of a known space: files have three decimals at least."""
+
 _SAME_GAMMA = 0.01
 """OpenImageIO names gammas with two digits (`g22_rec709_scene`), so a name may stand for half of this on each side,
 and encoders round 1 / 2.2 to five digits."""
@@ -161,7 +164,7 @@ def _read_chromaticities(primaries: tuple[float, ...], managed: ColorManager) ->
     """The linear space of these primaries and white: one that has a name, else a matrix; None for impossible ones."""
     reason = "its chromaticities"
     for name, gamut in CHROMATICITIES.items():
-        if len(primaries) == 8 and np.allclose(primaries, gamut, atol=1e-3):
+        if len(primaries) == 8 and np.allclose(primaries, gamut, atol=_SAME_PRIMARIES):
             if managed.is_plain and name == LINEAR_REC709:
                 return FileSpace(name, reason)
             if (space := managed.find(name)) is not None:

@@ -12,6 +12,18 @@ Gamut = tuple[float, ...]
 """x and y of red, green, blue and white."""
 
 REC709: Gamut = (0.640, 0.330, 0.300, 0.600, 0.150, 0.060, 0.3127, 0.3290)
+"""ITU-R BT.709, with the white D65."""
+
+_EQUAL_ENERGY: Gamut = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0 / 3.0, 1.0 / 3.0)
+"""The primaries of CIE XYZ itself."""
+
+_SAME_PRIMARIES = 1e-3
+_SAME_WHITE = 1e-6
+"""How far chromaticities may be from known ones: files have three decimals at least. White that is nearer to D65 than
+floats tell needs no adaptation."""
+
+_LEAST_GAMMA, _LARGEST_GAMMA = 0.1, 10.0
+"""Exponents that are taken seriously: displays have 1.8 to 2.8, others are damaged headers. Chosen by judgement."""
 
 _BRADFORD = np.array([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]])
 """From CIE XYZ to cone responses, in which white points are adapted: Lam 1985, as in OpenColorIO's ACES matrices."""
@@ -49,7 +61,7 @@ class HeaderSpace(Struct, frozen=True, dict=True):
     @cached_property
     def is_valid(self) -> bool:
         """False for impossible chromaticities: primaries on one line, a white that cannot be mixed from them."""
-        return 0.1 <= self.gamma <= 10.0 and make_gamut_matrix(self.gamut) is not None
+        return _LEAST_GAMMA <= self.gamma <= _LARGEST_GAMMA and make_gamut_matrix(self.gamut) is not None
 
     def to_rec709(self, rgb: Array) -> Array:
         """Colors [..., 3] as linear Rec.709, in new float32."""
@@ -99,12 +111,12 @@ def make_gamut_matrix(gamut: Gamut) -> Array | None:
 
 def is_tristimulus(gamut: Gamut) -> bool:
     """True for CIE XYZ with the white of equal energy."""
-    return np.allclose(gamut, (1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0 / 3.0, 1.0 / 3.0), atol=1e-3)
+    return np.allclose(gamut, _EQUAL_ENERGY, atol=_SAME_PRIMARIES)
 
 
 def _adapt_white(white: tuple[float, ...]) -> Array:
     """The matrix from CIE XYZ under this white to CIE XYZ under D65."""
-    if np.allclose(white, REC709[6:], atol=1e-6):
+    if np.allclose(white, REC709[6:], atol=_SAME_WHITE):
         return np.eye(3)
     here, there = (_BRADFORD @ np.array((x / y, 1.0, (1.0 - x - y) / y)) for x, y in (white, REC709[6:]))
     return np.linalg.solve(_BRADFORD, (there / here)[:, None] * _BRADFORD)

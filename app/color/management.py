@@ -31,6 +31,9 @@ from ..resources.library_names import is_utf8
 from ..resources.sandbox import UNRESTRICTED, Sandbox
 from .config_files import find_config_fault, open_config
 
+_MOST_LISTED = 12
+"""Names in a message: about three lines."""
+
 BUILT_IN = "ocio://default"
 LINEAR_REC709 = "lin_rec709_scene"
 _STUDIO = "ocio://studio-config-latest"
@@ -164,7 +167,9 @@ class ColorManager:
     def suggest_space(self, name: str) -> str:
         """The rest of a sentence about an unknown space."""
         names = {word.casefold(): word for word in (*SPACES, *self.spaces.getRoleNames(), *self.list_spaces())}
-        close_names = difflib.get_close_matches(name.casefold(), names, 1, 0.5)
+        close_names = difflib.get_close_matches(
+            name.casefold(), names, 1, 0.5
+        )  # chosen by judgement: below difflib's 0.6, as one letter counts much in a short name
         start = f"did you mean '{names[close_names[0]]}'? It" if close_names else "it"
         return f": {start} must be a color space or role of {self.where}, such as {_shorten_list(self.list_spaces())}"
 
@@ -239,7 +244,7 @@ class ColorManager:
         """Read a config file or a built-in config. A config of a graph is read inside of the sandbox; that of `$OCIO`
         is the user's own and may read all files.
         """
-        if not source.startswith("ocio://") and (reason := self._sandbox.fault(source)):
+        if not source.startswith("ocio://") and (reason := self._sandbox.find_read_fault(source)):
             raise self._error(f"{self._describe_source(source)}: {reason}")
         if not source.startswith("ocio://") and not (path := Path(source)).is_file():
             if path.exists() and (kind := find_special_kind(path.stat().st_mode)):
@@ -266,7 +271,9 @@ class ColorManager:
         except ocio_errors() as error:
             reason = f"is no color config that can be read: {describe_ocio_error(error)}"
             if source.startswith("ocio://"):
-                near = difflib.get_close_matches(source, list_builtin_configs(), 1, 0.3)
+                near = difflib.get_close_matches(
+                    source, list_builtin_configs(), 1, 0.3
+                )  # chosen by judgement: they are long, and users type parts
                 reason = f"there is no such built-in config{_suggest(near)}"
             raise self._error(f"{self._describe_source(source)}: {reason}") from None
 
@@ -303,7 +310,7 @@ def _make_manager(
 def _config_version(source: str, sandbox: Sandbox) -> str:
     if source.startswith("ocio://"):
         return ""
-    if sandbox.fault(source):
+    if sandbox.find_read_fault(source):
         return "outside"
     try:
         status = Path(source).stat()
@@ -355,7 +362,9 @@ def describe_ocio_error(error: Exception) -> str:
 
 def _shorten_list(names: Iterable[str]) -> str:
     listed = list(names)
-    return ", ".join(listed[:12]) + (f" and {len(listed) - 12} more" if len(listed) > 12 else "")
+    return ", ".join(listed[:_MOST_LISTED]) + (
+        f" and {len(listed) - _MOST_LISTED} more" if len(listed) > _MOST_LISTED else ""
+    )
 
 
 def _suggest(near: list[str]) -> str:

@@ -16,6 +16,7 @@ from .file_space import FileSpace
 from .management import LINEAR_REC709, ColorManager, OcioColorSpace, load_ocio
 
 _LARGEST = 65504.0
+"""The largest half float: what passes keep."""
 _LEAST_ALPHA = float(np.finfo(np.float32).tiny)
 """Below this alpha, division would amplify rounding. OpenImageIO's colorconvert has the same limit."""
 

@@ -51,6 +51,9 @@ from .ir import (
 )
 from .tiling.regions import find_regions
 
+_SINGULAR = 1e-12
+"""A determinant that is 0 but for the rounding of doubles: the picture is a millionth of its size along both sides."""
+
 _ROUNDING = 1e-6
 """Pixels by which the edge of a data window may be off after a matrix in doubles, and still lie on a pixel's edge."""
 
@@ -236,7 +239,7 @@ def _invert(matrix: Affine) -> Affine | None:
     """The matrix that leads back; None if there is none."""
     a, b, x, c, d, y = matrix
     determinant = a * d - b * c
-    if not (math.isfinite(determinant) and abs(determinant) > 1e-12):
+    if not (math.isfinite(determinant) and abs(determinant) > _SINGULAR):
         return None
     e, f, g, h = d / determinant, -b / determinant, -c / determinant, a / determinant
     return (e, f, -(e * x + f * y), g, h, -(g * x + h * y))

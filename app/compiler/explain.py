@@ -94,6 +94,7 @@ def plan_as_json(plan: Plan) -> dict[str, object]:
             {
                 "node": item.label,
                 "size": list(item.size),
+                "pixel_aspect": item.pixel_aspect,
                 "channels": item.channels,
                 "format": item.texel,
                 "slot": item.slot,
@@ -147,7 +148,8 @@ def _describe_pass(pass_: Pass) -> str:
 
 def _describe_surface(number: int, surface: Surface) -> str:
     width, height = surface.size
-    return f"#{number} {width}x{height} {surface.texel} slot {surface.slot} ({format_bytes(surface.nbytes)})"
+    shape = f" pixel aspect {surface.pixel_aspect:g}" if surface.pixel_aspect != 1.0 else ""
+    return f"#{number} {width}x{height}{shape} {surface.texel} slot {surface.slot} ({format_bytes(surface.nbytes)})"
 
 
 def _escape(text: str) -> str:

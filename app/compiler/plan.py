@@ -59,6 +59,13 @@ class Surface(Struct, frozen=True):
     """True for numbers that are no light: depth, ids, measurements."""
     frame: Size | None = None
     """The size of its picture's frame; None if it holds just that."""
+    pixel_aspect: float = 1.0
+    """The width of a pixel over its height, as the picture is to be shown."""
+
+    @property
+    def frame_size(self) -> Size:
+        """The size of its picture's frame, whatever it holds of it and around it."""
+        return self.frame or self.size
 
     @property
     def components(self) -> int:

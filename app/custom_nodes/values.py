@@ -10,6 +10,12 @@ from halation.nodes import Scalar, Unit, Value
 from .code import CodeFault
 from .notes import ParameterNote
 
+_LARGEST_FLOAT = 3.4e38
+"""Just below the largest float of 32 bits (3.403e38)."""
+
+_LEAST_INT_RANGE = 8.0
+"""The end of the slider of a whole number with a small default: chosen by eye, so that it has some steps."""
+
 _GLSL = {"float": 1, "int": 1, "bool": 1, "vec2": 2, "vec3": 3, "vec4": 4}
 
 
@@ -64,7 +70,7 @@ def _parse_default(glsl: str, name: str, text: str, line: int) -> Scalar:
     numbers = tuple(_parse_number(part) for part in parts)
     if len(numbers) == 1 and length > 1:
         numbers *= length
-    if len(numbers) != length or not all(abs(number) < 3.4e38 for number in numbers):
+    if len(numbers) != length or not all(abs(number) < _LARGEST_FLOAT for number in numbers):
         expected = "a number" if length == 1 else f"{length} numbers, as (1, 0.5, 0)"
         raise CodeFault(line, f"the default of '{name}' is '{text}': a {glsl} is {expected}")
     if glsl == "int":
@@ -95,6 +101,6 @@ def _choose_range(glsl: str, default: Scalar, note: ParameterNote) -> tuple[floa
         return (0.0, 1.0) if note.handle else (-1.0, 1.0)
     top = max(1.0, 2.0 * abs(float(default)))
     if glsl == "int":
-        top = max(8.0, top)
+        top = max(_LEAST_INT_RANGE, top)
     low = note.minimum if note.minimum > float("-inf") else (0.0 if float(default) >= 0.0 else -top)
     return low, min(max(top, low + 1.0), note.maximum)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, cast
 
-from halation.nodes import Scalar, Value, read_rows
+from halation.nodes import ROWS, SPLINE_ROWS, RowLayout, Scalar, Value
 
 from ..errors import DocumentError
 from ..graph import Animation, Expression, Key, Keys
@@ -14,15 +14,18 @@ from .records import Section, convert
 from .syntax import member, word
 
 
-def read_animation(raw: Any, file: str, path: str) -> Animation:
-    """The entry of `animation` at JSON path `path`. Whether it makes sense is for `problems`. Raises DocumentError."""
+def read_animation(raw: Any, file: str, path: str, value: Value | None = None) -> Animation:
+    """The entry of `animation` of a declared value, at JSON path `path`; None if nobody knows it.
+
+    Whether it makes sense is for `problems`. Raises DocumentError.
+    """
     record = convert(raw, records.AnimationRecord, file, path)
     if (record.expression is None) == (record.keys is None):
         raise DocumentError(file, path, 'it needs either "keys" or an "expression"')
     if record.expression is not None:
         return Expression(record.expression)
     where = member(path, "keys")
-    keys = tuple(_key(key, file, f"{where}[{place}]") for place, key in enumerate(record.keys or ()))
+    keys = tuple(_key(key, file, f"{where}[{place}]", value) for place, key in enumerate(record.keys or ()))
     frames = [key.frame for key in keys]
     if frames != sorted(set(frames)):
         raise DocumentError(file, where, "list the keys by frame, one for each")
@@ -37,9 +40,9 @@ def describe_animation(animation: Animation, value: Value | None) -> Section:
     return {"keys": [_describe_key(key, value) for key in animation.keys]} | outside
 
 
-def _key(raw: Any, file: str, path: str) -> Key:
+def _key(raw: Any, file: str, path: str, declared: Value | None) -> Key:
     record = convert(raw, records.KeyRecord, file, path)
-    value = _plain(record.value)
+    value = _plain(record.value, ROWS.get(declared.type, SPLINE_ROWS) if declared else SPLINE_ROWS)
     if value is None:
         fault = f"expected a number, true, false, a list of numbers or a list of points, got {word(record.value)}"
         raise DocumentError(file, member(path, "value"), fault)
@@ -51,14 +54,14 @@ def _key(raw: Any, file: str, path: str) -> Key:
     return Key(record.frame, value, record.interpolation, record.left, record.right)
 
 
-def _plain(raw: object) -> Scalar | None:
+def _plain(raw: object, rows: RowLayout) -> Scalar | None:
     if isinstance(raw, bool | int | float):
         return raw
     if not isinstance(raw, list):
         return None
     parts = cast("list[object]", raw)
     if parts and isinstance(parts[0], list):
-        return read_rows(parts)
+        return rows.read(parts)
     numbers = tuple(float(part) for part in parts if isinstance(part, int | float) and not isinstance(part, bool))
     return numbers if numbers and len(numbers) == len(parts) else None
 

@@ -4,10 +4,29 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from msgspec import Struct, field
+
 from ..custom_nodes import Code, CodeFault, CustomNode, Language
 from ..errors import DocumentError
 from ..resources.sandbox import Sandbox
+from . import limits
 from .disk import read_text
+
+
+class CodeTally(Struct):
+    """Counts the code of a graph. The same code in many nodes is read once, and counts once."""
+
+    codes: set[Code] = field(default_factory=set[Code])
+    letters: int = 0
+
+    def add(self, code: Code) -> str | None:
+        """Count the code of a node. Returns why it is refused, or None."""
+        if code not in self.codes:
+            self.codes.add(code)
+            self.letters += max(len(code.text) + len(code.vertex), limits.LEAST_CODE)
+        if self.letters <= limits.MAX_CODE:
+            return None
+        return f"with this node, the code of the graph has more than {limits.MAX_CODE:,} letters; that is no graph"
 
 
 def read_code_file(language: Language, file: str, folder: str, sandbox: Sandbox) -> Code:

@@ -15,6 +15,12 @@ MAX_PARTS = 1_500_000
 MAX_KEY = 1000
 """Characters of a key: the names of nodes and sockets, and paths of links. Messages repeat them."""
 
+MAX_CODE = 1_000_000
+"""Letters of all code of a graph together, as many as one text may have: to read them takes a second or two."""
+
+LEAST_CODE = 200
+"""Letters that the shortest code counts as: to make a node type of it takes as long as to read so many (measured)."""
+
 MAX_NODES = 100_000
 """Nodes after every group is expanded: a few files that hold each other twice would otherwise make billions."""
 

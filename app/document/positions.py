@@ -9,9 +9,7 @@ from __future__ import annotations
 
 import json
 import re
-from bisect import bisect_right
 from collections.abc import Iterable
-from itertools import accumulate
 
 from .syntax import member
 
@@ -37,7 +35,7 @@ class Positions:
 
     def __init__(self, text: str, paths: Iterable[str]) -> None:
         self._places = _find_places(text, _prefixes(paths))
-        self._starts = [0, *accumulate(len(line) + 1 for line in text.split("\n"))]
+        self._lines = _count_lines(text, {offset for offsets in self._places.values() for offset in offsets})
 
     def __contains__(self, path: str) -> bool:
         return path in self._places
@@ -49,7 +47,17 @@ class Positions:
         """
         while path and path not in self._places:
             path = _shorten(path)
-        return bisect_right(self._starts, self._places[path][1 if last else 0])
+        return self._lines[self._places[path][1 if last else 0]]
+
+
+def _count_lines(text: str, offsets: Iterable[int]) -> dict[int, int]:
+    """The line of each offset. The text is read once: it may have a million lines, and few of them are asked for."""
+    lines, line, before = dict[int, int](), 1, 0
+    for offset in sorted(offsets):
+        line += text.count("\n", before, offset)
+        lines[offset] = line
+        before = offset
+    return lines
 
 
 def _shorten(path: str) -> str:

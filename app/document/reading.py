@@ -38,7 +38,7 @@ from ..graph.values import coerce, describe_type
 from ..resources.sandbox import Sandbox
 from . import limits, records
 from .animation import read_animation
-from .code import read_code_file
+from .code import CodeTally, read_code_file
 from .disk import list_graph_files, read_text, resolve_file
 from .migrations import MIGRATIONS, Migration, migrate, newest
 from .records import convert, read_type, unknown_keys
@@ -89,8 +89,9 @@ class _DocumentLoader(Struct):
     sandbox: Sandbox | None
     """Where files of groups and of code may lie; None where none is read."""
     loaded: dict[Path, tuple[Graph, int]] = field(default_factory=dict[Path, tuple[Graph, int]])
-    shared: dict[bytes, tuple[Node, bool]] = field(default_factory=dict[bytes, tuple[Node, bool]])
+    shared: dict[bytes, tuple[Item, bool]] = field(default_factory=dict[bytes, tuple[Item, bool]])
     """Nodes that were read, and whether they are muted, by their text."""
+    code: CodeTally = field(default_factory=CodeTally)
 
     def load_file(self, path: Path, sandbox: Sandbox, outer: tuple[Path, ...] = ()) -> tuple[Graph, int]:
         """The graph in a file, and how many nodes it has when all groups are expanded."""
@@ -230,8 +231,8 @@ class _BodyReader(Struct):
         for target, item in raw.items():
             port = self.parse_port(target, section, target)
             where = member(section, target)
-            animation = read_animation(item, self.file, where)
             value = find_setting(nodes[port.node], port.socket) if port.node in nodes else None
+            animation = read_animation(item, self.file, where, value)
             animations[port] = adapt_animation(value, animation) if value else animation
             self.keep_unknown(f"animation.{target}", item, records.AnimationRecord)
         return animations
@@ -247,7 +248,7 @@ class _BodyReader(Struct):
             return node[0], 1, node[1]
         common, unknown_count = convert(raw, records.TypeRecord, self.file, at), len(self.extra)
         item, count = self.read_item(id, raw, common.type, at, depth)
-        if common.type in self.loading.types and isinstance(item, Node) and len(self.extra) == unknown_count:
+        if common.type not in _LANGUAGES and not isinstance(item, Group) and len(self.extra) == unknown_count:
             self.loading.shared[text] = item, common.muted
         return item, count, common.muted
 
@@ -292,7 +293,10 @@ class _BodyReader(Struct):
             fault = f'a node of type "{language}" needs either "code", its lines, or "file", the name of a file'
             raise DocumentError(self.file, at, fault)
         try:
-            kind = node_type(self.find_code(record, language))
+            code = self.find_code(record, language)
+            if fault := self.loading.code.add(code):
+                raise DocumentError(self.file, at, fault)
+            kind = node_type(code)
         except CodeFault as fault:
             reason = f"{record.file or 'its code'}, {fault}" if fault.line else str(fault)
             return Unknown(language, unknown_keys(raw, records.TypeRecord), reason)
@@ -368,7 +372,7 @@ class _BodyReader(Struct):
         """The graph in a group's file."""
         inner, sandbox = Path(self.folder, path), self.loading.sandbox
         assert sandbox is not None, "groups in files are not read without a sandbox"
-        if reason := sandbox.fault(inner):
+        if reason := sandbox.find_read_fault(inner):
             raise DocumentError(self.file, at, f"the group file '{inner}' {reason}")
         real = resolve_file(inner)
         if real is None:

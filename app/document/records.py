@@ -2,6 +2,8 @@
 
 import re
 from collections.abc import Mapping
+from functools import cache
+from types import MappingProxyType
 from typing import Annotated, Any, TypeVar
 
 import msgspec
@@ -169,10 +171,11 @@ def type_name(kind: Kind, width: int) -> str:
     return f"{kind}{width}" if kind is Kind.VECTOR and width != 3 else str(kind)
 
 
-def type_names() -> dict[str, tuple[Kind, int]]:
+@cache
+def type_names() -> Mapping[str, tuple[Kind, int]]:
     """Kind and channels by every type name of files."""
     kinds_by_name = {type_name(kind, width): (kind, width) for kind in Kind for width in (2, 3, 4)}
-    return {**kinds_by_name, "Vector3": (Kind.VECTOR, 3)}
+    return MappingProxyType({**kinds_by_name, "Vector3": (Kind.VECTOR, 3)})
 
 
 def read_type(name: str, file: str, path: str) -> tuple[Kind, int]:

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from typing import Any, get_args
 
 import msgspec
-from halation.nodes import MAX_POINTS, POINT_LENGTH, ItemKind, Items, ItemSet, Node, Value, is_length
+from halation.nodes import MAX_POINTS, SPLINE_ROWS, STROKE_ROWS, ItemKind, Items, ItemSet, Node, Value, is_length
 
 from ..custom_nodes import Language
 from ..graph import INPUTS, OUTPUTS
@@ -30,8 +30,10 @@ _VALUE_PATH: Schema = {"type": "string", "pattern": r"^[^.]+\.[^.]+(\.[^.]+\.[^.
 _NAME: Schema = {"pattern": "^[^./\\u0000-\\u001f\\u007f]+$"}
 _LENGTH_UNIT: Schema = {"type": "string", "pattern": r"^(px|height|px@[1-9]\d{0,4})$"}
 _NUMBERS: Schema = {"type": "array", "items": {"type": "number"}}
-_ROW: Schema = {**_NUMBERS, "minItems": 2, "maxItems": POINT_LENGTH}
-_SPLINE: Schema = {"type": "array", "items": _ROW, "minItems": 1}
+_SPLINE, _STROKE = (
+    {"type": "array", "items": {**_NUMBERS, "minItems": 2, "maxItems": rows.length}, "minItems": 1}
+    for rows in (SPLINE_ROWS, STROKE_ROWS)
+)
 
 _DOCS = {
     "GraphRecord.halation": "The number of the format.",
@@ -119,6 +121,7 @@ def schema(types: Mapping[str, type[Node]]) -> Schema:
             "curve": _points(2, range(2, MAX_POINTS + 1)),
             "ramp": _points(5, range(2, MAX_POINTS + 1)),
             "spline": _SPLINE,
+            "stroke": _STROKE,
             **node_schemas,
         },
     }
@@ -206,7 +209,7 @@ def _value(value: Value) -> Schema:
             type_schema = {"type": "string"}
         case "color" | "vector" | "matrix":
             type_schema = {"type": "array", "items": number, "minItems": value.length, "maxItems": value.length}
-        case "curve" | "ramp" | "spline":
+        case "curve" | "ramp" | "spline" | "stroke":
             type_schema = {"$ref": f"#/$defs/{value.type}"}
         case "items":
             assert value.items is not None

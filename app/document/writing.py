@@ -160,7 +160,8 @@ def _input(name: str, end: Input) -> Section:
 
 
 def _output(end: Output) -> Section:
-    return {"type": type_name(end.kind, end.width)} | _fill({"layer": end.layer, "view": end.view})
+    facts = {"type": type_name(end.kind, end.width)} | _fill({"layer": end.layer, "view": end.view})
+    return facts | ({"overscan": True} if end.overscan else {})
 
 
 def _control(item: Control) -> Section:

@@ -18,6 +18,8 @@ from .operands import TYPE, OperandReader, collect_names, skip_lengths
 from .tokens import GlslFault, GlslToken, count_line, mask_directives, match_brackets, read_tokens
 
 DEEPEST_BRACKETS = 100
+"""Brackets inside each other. The limits without figures are chosen by judgement: far above hand-written code."""
+
 DEEPEST_STATEMENTS = 100
 """Statements inside each other without brackets: `if (a) if (b)`."""
 
@@ -38,6 +40,8 @@ LARGEST_EXPANSION = 250_000
 """Words and signs of a function with all that it calls written out."""
 
 MOST_FUNCTIONS = 1000
+"""Functions of a text."""
+
 DEEPEST_CALLS = 100
 """Functions that call each other in a chain: 1000 take Mesa a gigabyte."""
 

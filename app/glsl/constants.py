@@ -6,6 +6,13 @@ import math
 import re
 from collections.abc import Sequence
 
+_EXACT_FLOATS = 2**24
+"""Floats of 32 bits hold all whole numbers below it."""
+
+_CLEAR_FRACTION = 1e-3
+"""How far a constant must be from a whole number, so that its rounding to 32 bits cannot reach it: chosen by judgement,
+since some operations before may each have been rounded."""
+
 Number = int | float | tuple[int, ...]
 
 
@@ -98,6 +105,6 @@ def _truncate(number: int | float) -> int | None:
     if isinstance(number, int):
         return number
     near = round(number)
-    if abs(number) >= 2**24:
+    if abs(number) >= _EXACT_FLOATS:
         return None
-    return near if number == near else math.trunc(number) if abs(number - near) > 1e-3 else None
+    return near if number == near else math.trunc(number) if abs(number - near) > _CLEAR_FRACTION else None

@@ -161,7 +161,7 @@ class _Expander:
             parameters = tuple(part.strip() for part in definition[3].split(",")) if definition[3].strip() else ()
             if len(set(parameters)) < len(parameters) or not all(_WORD.fullmatch(part) for part in parameters):
                 raise GlslFault(line, f"the parameters of the macro '{definition[1]}' are not names")
-        self._spend(line, len(body) // 8)
+        self._spend(line, len(body) // 8)  # to read it costs less than to use it: chosen by judgement
         if len(self.macros) >= MOST_MACROS:
             raise GlslFault(line, f"there are more than {MOST_MACROS} macros")
         self.macros[definition[1]] = _Macro(body, parameters)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from halation.nodes import Value
+from halation.nodes import ROWS, Value
 from msgspec.structs import replace
 
 from .expressions import Expression
@@ -14,7 +14,7 @@ from .values import coerce, value_fault
 
 Animation = Keys | Expression
 
-ANIMATED = frozenset({"float", "int", "bool", "color", "vector", "matrix", "spline"})
+ANIMATED = frozenset({"float", "int", "bool", "color", "vector", "matrix", "spline", "stroke"})
 """Types of values that can be animated."""
 
 
@@ -42,8 +42,8 @@ def animation_type_fault(port: Port, value: Value, animation: Animation) -> str 
     """Why the value at `port` cannot be animated in this way, or None. Names in expressions are not checked."""
     if value.type not in ANIMATED:
         return f"{port}: a {value.type} cannot change over time"
-    if isinstance(animation, Expression) and value.type == "spline":
-        return f"{port}: a spline cannot follow an expression; set keys"
+    if isinstance(animation, Expression) and value.type in ROWS:
+        return f"{port}: a {value.type} cannot follow an expression; set keys"
     if isinstance(animation, Expression):
         return f"{port}: {animation.fault}" if animation.fault else None
     if not animation.keys:

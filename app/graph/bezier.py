@@ -13,6 +13,15 @@ Point = tuple[float, ...]
 
 Segment = tuple[Point, Point, Point, Point]
 
+_SAME_FRAME = 1e-9
+"""A handle is vertical if it is nearer to its key than this part of the segment, where its slope has no meaning."""
+
+_LEVEL = 1e-12
+"""Slopes below this are 0 but for rounding: Newton's method would leave the segment."""
+
+_LEAST_STEP, _LEAST_BRACKET = 1e-15, 1e-16
+"""Steps of t and brackets that doubles near 1 do not tell from 0 (2e-16)."""
+
 _MAX_STEPS = 100
 """More than bisection needs for all bits of a double; Newton's method needs 3 to 6."""
 
@@ -68,7 +77,8 @@ def end_slopes(first: Point, right_handle: Point, left_handle: Point, last: Poin
     points = (last, left_handle, right_handle, first) if last_end else (first, right_handle, left_handle, last)
     end_point = points[0]
     next_point = next(
-        (point for point in points[1:] if abs(point[0] - end_point[0]) > 1e-9 * abs(last[0] - first[0])), points[3]
+        (point for point in points[1:] if abs(point[0] - end_point[0]) > _SAME_FRAME * abs(last[0] - first[0])),
+        points[3],
     )
     return tuple(part / (next_point[0] - end_point[0]) for part in _subtract(end_point, next_point)[1:])
 
@@ -83,8 +93,8 @@ def _solve_parameter(first: Point, right_handle: Point, left_handle: Point, last
         error = ((cubic * t + square) * t + line) * t - target
         low, high = (low, t) if error > 0.0 else (t, high)
         slope = (3.0 * cubic * t + 2.0 * square) * t + line
-        step = t - error / slope if slope > 1e-12 else -1.0
-        if error == 0.0 or abs(step - t) < 1e-15 or high - low < 1e-16:
+        step = t - error / slope if slope > _LEVEL else -1.0
+        if error == 0.0 or abs(step - t) < _LEAST_STEP or high - low < _LEAST_BRACKET:
             return t
         t = step if low < step < high else 0.5 * (low + high)
     return t

@@ -22,9 +22,13 @@ from msgspec import Struct
 from ..errors import UsageError
 
 MOST_FRAMES = 1_000_000
+"""Frames of one list: eleven hours at 24 frames per second. More are taken for a typing error."""
 _DIGITS = 9
+"""Digits of a frame number: all of them then fit into 32 bits."""
 _MAX_PADDING = 16
+"""Digits in the name of a file. Chosen by judgement: renderers write 4 to 8."""
 _SHOWN_CHARACTERS = 40
+"""How much of a wrong text a message repeats."""
 _EXAMPLE = "such as 1-24, 1-24x2 or 1-12,40"
 
 VIDEO_ENDINGS = frozenset(

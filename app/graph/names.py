@@ -3,49 +3,29 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Collection, Generator, Iterable, Mapping
-from contextlib import contextmanager
-from contextvars import ContextVar
+from collections.abc import Collection, Iterable, Mapping
 from typing import TypeVar
 
 from ..errors import GraphError
+from ..resources.suggestions import may_compare
 
 INPUTS, OUTPUTS = "inputs", "outputs"
 """The node ids in links that stand for the inputs and outputs of the graph itself."""
 
 _MAX_LISTED = 12
+"""Names in a message: about three lines."""
 _MAX_LENGTH = 100
 """Letters of a name. Longer names get no suggestion: the time to compare two names grows with the square of this."""
 _MAX_NAMES = 20_000
 """Names that are compared with one unknown name. Comparing that many takes 0.1 s."""
-_MAX_COMPARISONS = 40_000
-"""Names that are compared for all faults of one graph together. A file can hold 100,000 faults."""
-_LEAST_COMPARISONS = 20
-"""What the shortest list counts as: starting to compare takes as long as comparing this many names (measured)."""
-
-_COMPARISONS_LEFT: ContextVar[list[int] | None] = ContextVar("_COMPARISONS_LEFT", default=None)
 
 T = TypeVar("T")
 
 
-@contextmanager
-def limit_suggestions() -> Generator[None]:
-    """Inside this context only the first of many faults get suggestions, because each suggestion takes time."""
-    token = None if _COMPARISONS_LEFT.get() else _COMPARISONS_LEFT.set([_MAX_COMPARISONS])
-    try:
-        yield
-    finally:
-        if token:
-            _COMPARISONS_LEFT.reset(token)
-
-
 def did_you_mean(name: str, names: Collection[str]) -> str:
     """The end of a sentence about an unknown name: the most similar of `names`, or a short list of them, or ""."""
-    comparisons = _COMPARISONS_LEFT.get() or [_MAX_COMPARISONS]
-    cost = max(len(names), _LEAST_COMPARISONS)
-    if len(name) > _MAX_LENGTH or cost > min(_MAX_NAMES, comparisons[0]):
+    if len(name) > _MAX_LENGTH or len(names) > _MAX_NAMES or not may_compare(len(names)):
         return ""
-    comparisons[0] -= cost
     lowered = {item.lower(): item for item in sorted(names, reverse=True) if len(item) <= _MAX_LENGTH}
     if near := difflib.get_close_matches(name.lower(), lowered, n=1):
         return f"; did you mean '{lowered[near[0]]}'?"

@@ -12,12 +12,13 @@ from msgspec.structs import replace
 
 from ..errors import GraphError
 from ..resources.record import Record
+from ..resources.suggestions import limit_suggestions
 from . import rules
 from .evaluate_at_frame import animation_fault, find_expression_loops
 from .graph import Graph, Group, Item, find_setting, signature
 from .model import MAX_GROUP_DEPTH, Input, Port, Unknown
 from .named_items import find_item_faults
-from .names import INPUTS, OUTPUTS, did_you_mean, limit_suggestions, name_fault, pick
+from .names import INPUTS, OUTPUTS, did_you_mean, name_fault, pick
 from .rules import Rule, Severity
 from .unknown_nodes import explain_unknown
 from .unmerged import CONFLICTS, find_unmerged

@@ -6,12 +6,13 @@ import math
 from itertools import pairwise
 from typing import Any, cast
 
-from halation.nodes import MAX_POINTS, MAX_SPLINE_POINTS, Scalar, Value, list_rows, read_rows
+from halation.nodes import MAX_POINTS, ROWS, Scalar, Value
 
 from ..errors import UsageError
 from .frames import Pattern
 
 _INT32 = 2**31
+"""One above the largest int of GLSL."""
 FLOAT32 = 3.4028234663852886e38
 """The largest number that 32 bits hold."""
 
@@ -34,8 +35,8 @@ def coerce_scalar(value: Value, setting: object) -> Scalar | None:
             return coerce_numbers(setting, value.length)
         case "curve" | "ramp":
             return _coerce_points(setting, value.length, 2)
-        case "spline":
-            return read_rows(setting)
+        case "spline" | "stroke":
+            return ROWS[value.type].read(setting)
         case "items":
             return None
 
@@ -58,8 +59,8 @@ def _coerce_points(setting: object, width: int, least: int) -> tuple[float, ...]
 
 
 def describe_scalar(value: Value, plain: Any) -> Any:
-    """A setting as a file holds it: a spline as rows, one for each point."""
-    return list_rows(plain) if value.type == "spline" else plain
+    """A setting as a file holds it: a spline or a stroke as rows, one for each point."""
+    return ROWS[value.type].list(plain) if value.type in ROWS else plain
 
 
 def describe_type(value: Value) -> str:
@@ -83,8 +84,8 @@ def describe_type(value: Value) -> str:
             assert value.items is not None
             noun, kind = value.items.noun, value.items.kinds[0].name
             return f'{noun}s by name, such as {{"{noun}_1": {{"kind": "{kind}"}}}}'
-        case "spline":
-            return "a list of points, each a list of x, y, then up to five numbers for its tangents and its feather"
+        case "spline" | "stroke":
+            return f"a list of points, each a list of x, y, {ROWS[value.type].words}"
         case "ramp":
             return "a list of t, red, green, blue, alpha for every stop, at least two"
 
@@ -125,8 +126,8 @@ def sequence_fault(path: str) -> str | None:
 
 def _order_fault(value: Value, plain: tuple[float, ...]) -> str | None:
     """Why the points of a curve or ramp are not in order from 0 to 1, else None."""
-    if value.type == "spline" and len(plain) > MAX_SPLINE_POINTS * value.length:
-        return f"{len(plain) // value.length} points are too many: it takes at most {MAX_SPLINE_POINTS}"
+    if value.type in ROWS and len(plain) > ROWS[value.type].most * value.length:
+        return f"{len(plain) // value.length} points are too many: it takes at most {ROWS[value.type].most}"
     if value.type not in ("curve", "ramp"):
         return None
     places = plain[:: value.length]

@@ -11,6 +11,7 @@ from typing import Any, cast
 
 CONFLICTS = "conflicts"
 _SHOWN_CHARACTERS = 40
+"""How much of a value a message repeats."""
 
 
 def find_unmerged(extra: Mapping[str, Mapping[str, Any]]) -> Iterator[tuple[str, str, str, str]]:

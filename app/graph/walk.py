@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Hashable, Iterable, Mapping, Sequence
+from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from graphlib import CycleError, TopologicalSorter
 from types import MappingProxyType
@@ -13,6 +13,9 @@ from halation.nodes import Node
 from ..errors import GraphError
 from .model import Port, Unknown
 from .names import INPUTS, OUTPUTS
+
+_REPORTED_LOOPS = 8
+"""Loops that are reported at once: more than anybody repairs in one go. Chosen by judgement."""
 
 Steps = Mapping[str, Iterable[str]]
 N = TypeVar("N", bound=Hashable)
@@ -53,17 +56,31 @@ def has_loops(steps: Mapping[N, Collection[N]]) -> bool:
     return len(removed) < len(steps)
 
 
-def find_loops(steps: Steps, max_count: int = 8) -> tuple[tuple[str, ...], ...]:
-    """Up to `max_count` loops that share no name, each as `a, b, a`."""
-    remaining, loops_found = {name: set(after) for name, after in steps.items()}, list[tuple[str, ...]]()
-    while len(loops_found) < max_count:
-        try:
-            TopologicalSorter(remaining).prepare()
-            break
-        except CycleError as error:
-            loops_found.append(tuple(error.args[1]))
-            inside = set(loops_found[-1])
-            remaining = {name: after - inside for name, after in remaining.items() if name not in inside}
+def find_loops(steps: Steps, max_count: int = _REPORTED_LOOPS) -> tuple[tuple[str, ...], ...]:
+    """Up to `max_count` loops that share no name, each as `a, b, a`: a name is after one that it leads to.
+
+    In one walk: the names of a loop are left out as soon as it is known, and from a name that was left behind without a
+    loop none can come later.
+    """
+    loops_found, done = list[tuple[str, ...]](), set[str]()
+    for root in steps:
+        path, rests = dict[str, None](), list[Iterator[str]]()
+        after: str | None = root
+        while after is not None and len(loops_found) < max_count:
+            if after in path:
+                loop = [after]
+                while loop[-1] != after or len(loop) == 1:
+                    loop.append(path.popitem()[0])
+                    rests.pop()
+                loops_found.append(tuple(loop))
+                done.update(loop)
+            elif after not in done and after in steps:
+                path[after] = None
+                rests.append(iter(steps[after]))
+            while rests and (after := next(rests[-1], None)) is None:
+                done.add(path.popitem()[0])
+                rests.pop()
+            after = after if rests else None
     return tuple(loops_found)
 
 

@@ -135,7 +135,9 @@ class MediaProvider:
         color = picture.kind.is_color and not layer.is_data
         mark = _conversion_mark(picture, sandbox=self.sandbox) if color else ""
         half = layer.is_half and not (mark and _changes_numbers(picture, layer.full_name, sandbox=self.sandbox))
-        return PictureProbe(header.size, half, header.fingerprint + mark, header.by_rows, header.overscan)
+        return PictureProbe(
+            header.size, half, header.fingerprint + mark, header.by_rows, header.overscan, header.pixel_aspect
+        )
 
     def find_plain_view(self, picture: Picture) -> str | None:
         """The view that encodes color as a picture for a screen has it, "" for light of a scene, None for data.
@@ -236,6 +238,10 @@ class MediaProvider:
                 earlier = read_info(path, sandbox=self.sandbox)
             self._infos[path] = earlier
         return self._infos[path]
+
+    def has_header(self, path: str) -> bool:
+        """True if the header of a file has been read for the graph that was bound last."""
+        return path in self._infos
 
     def _find_encoding(self, picture: Picture, earlier: _Encoding | None) -> _Encoding:
         """The answer of `find_plain_view` for a file; `earlier` holds if file and color config are still the same."""

@@ -17,11 +17,11 @@ from ..document.disk import read_text
 from ..document.positions import Positions
 from ..errors import DocumentError, GraphError
 from ..graph import Graph, Group, Problem
-from ..graph.names import limit_suggestions
 from ..graph.rules import RULES as GRAPH_RULES
 from ..graph.rules import Rule
 from ..resources.collection import pause_collection
 from ..resources.sandbox import Sandbox
+from ..resources.suggestions import limit_suggestions
 from . import allowing, compiled, surroundings, texts
 from .rules import CHECKS
 from .sheet import GraphFacts, bodies

@@ -88,6 +88,9 @@ class NotingProvider(Struct, dict=True, eq=False):
     _answers: dict[Any, Any] = field(default_factory=dict[Any, Any])
     _asked: dict[str, str] = field(default_factory=dict[str, str])
     """Paths as the graph has them, by the file of a frame."""
+    _refused_files: dict[tuple[str, str], object] = field(default_factory=dict[tuple[str, str], object])
+    """The question about a file whose header cannot be read: the answer for one layer is that for all of them. The
+    folder that the file must lie in belongs to it, since a file may be refused for that alone."""
     size: tuple[int, int] = SIZE
 
     @cached_property
@@ -133,11 +136,14 @@ class NotingProvider(Struct, dict=True, eq=False):
 
     def probe_picture(self, picture: Picture) -> PictureProbe:
         """Size and precision of a picture; assumed ones if it cannot be read."""
-        how = (picture.kind, picture.width, picture.space, picture.color)
-        key, path = (picture.path, picture.layer, *how), picture.path
-        probe = (
-            None if picture.in_memory else self._answer_or_note(path, key, lambda: self.pictures.probe_picture(picture))
-        )
+        path, file = picture.path, (picture.path, picture.within)
+        if picture.in_memory:
+            return PictureProbe(self.size, False, path)
+        own_key = (*file, picture.layer, picture.kind, picture.width, picture.space, picture.color)
+        key = self._refused_files.get(file, own_key)
+        probe = self._answer_or_note(path, key, lambda: self.pictures.probe_picture(picture))
+        if probe is None and not self.pictures.has_header(path):
+            self._refused_files[file] = key
         return probe or PictureProbe(self.size, False, path)
 
     def write_color_program(self, change: ColorChange) -> ColorProgram:
@@ -169,7 +175,7 @@ class NotingProvider(Struct, dict=True, eq=False):
         try:
             return self._answer("once", key, ask)
         except InputError as fault:
-            self.faults[str(fault)] = self._asked.get(path, path)
+            self.faults[str(_detach(fault))] = self._asked.get(path, path)
         return None
 
     def _answer(self, kind: str, key: object, ask: Callable[[], T]) -> T:
@@ -178,11 +184,17 @@ class NotingProvider(Struct, dict=True, eq=False):
             try:
                 self._answers[kind, key] = ask()
             except HalationError as fault:
-                self._answers[kind, key] = fault
+                self._answers[kind, key] = _detach(fault)
         answer = self._answers[kind, key]
         if isinstance(answer, HalationError):
             raise answer
         return answer
+
+
+def _detach(fault: HalationError) -> HalationError:
+    """A fault without what it came from, which would keep every local variable on the way: a graph may have many."""
+    fault.__context__ = None
+    return fault.with_traceback(None)
 
 
 def problems(graph: Graph, world: NotingProvider) -> Iterator[tuple[int, Problem]]:

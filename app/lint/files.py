@@ -10,8 +10,8 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from ..document.disk import read_text
-from ..errors import DocumentError
-from ..resources.folders import is_foreign, walk_project
+from ..errors import DocumentError, InputError
+from ..resources.folders import find_matches, is_foreign, walk_project
 from ..resources.sandbox import Sandbox
 
 _KEY = re.compile(r'"halation"\s*:')
@@ -36,7 +36,7 @@ def find_graphs(paths: Iterable[Path], sandbox: Sandbox) -> Iterator[Path]:
 def _expand(path: Path, sandbox: Sandbox) -> Iterator[Path]:
     if path.is_dir():
         yield from _graphs_in_folder(path, sandbox=sandbox)
-    elif path.exists() or not (matches := sorted(glob.glob(str(path), recursive=True))):  # noqa: PTH207
+    elif path.exists() or not (matches := _find_matches(path, sandbox)):
         yield path
     else:
         depth = next((index for index, part in enumerate(path.parts) if glob.has_magic(part)), len(path.parts))
@@ -45,6 +45,14 @@ def _expand(path: Path, sandbox: Sandbox) -> Iterator[Path]:
             if any(is_foreign(Path(*steps[:end])) for end in range(depth + 1, len(steps) + 1)):
                 continue
             yield from _graphs_in_folder(Path(match), sandbox=sandbox) if Path(match).is_dir() else (Path(match),)
+
+
+def _find_matches(path: Path, sandbox: Sandbox) -> list[str]:
+    """The matches of a pattern; none of what is no pattern, or leads outside, so that it is refused as a file is."""
+    try:
+        return find_matches(str(path), sandbox) if glob.has_magic(str(path)) else []
+    except InputError:
+        return []
 
 
 def _graphs_in_folder(folder: Path, sandbox: Sandbox) -> Iterator[Path]:

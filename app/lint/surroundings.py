@@ -98,7 +98,7 @@ class Surroundings(Struct, eq=False):
         """The content of a folder; nothing if it may not be read."""
         if folder not in self._names:
             try:
-                is_allowed = not self.sandbox.fault(folder)
+                is_allowed = not self.sandbox.find_read_fault(folder)
                 self._names[folder] = frozenset(os.listdir(folder) if is_allowed else ())  # noqa: PTH208
             except OSError:
                 self._names[folder] = frozenset()

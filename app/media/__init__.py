@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from .convert import LayerRequest, Pixels
     from .info import read_info
     from .layers import ImageInfo, Layer, find_layer
-    from .metadata import TypedAttribute, read_metadata
+    from .metadata import TypedAttribute, read_metadata, set_pixel_aspect
     from .pictures.writer import (
         PICTURE_ENDINGS,
         check_destination,
@@ -56,6 +56,7 @@ __all__ = [
     "read_layer",
     "read_layers",
     "read_metadata",
+    "set_pixel_aspect",
     "stores_halves",
     "suggest_pattern",
     "write_picture",
@@ -81,6 +82,7 @@ _HOMES = MappingProxyType(
         "read_layer": "pixels",
         "read_layers": "pixels",
         "read_metadata": "metadata",
+        "set_pixel_aspect": "metadata",
         "stores_halves": "pictures.writer",
         "suggest_pattern": "sequences",
         "cut_to_frame": "pictures.writer",

@@ -54,7 +54,7 @@ class ImageInfo(Struct, frozen=True):
     `size` is the display window, upright; `fingerprint` changes when the file does. `by_rows` is True if single rows
     can be read: pixels are stored upright, over the whole window, and not as one stream. `overscan` is the rectangle
     (x, y, width, height) of the display window, whose top left pixel is 0, and of all pixels around it; None where
-    there are none.
+    there are none. `pixel_aspect` is the width of a pixel over its height, upright.
     """
 
     path: str
@@ -64,6 +64,7 @@ class ImageInfo(Struct, frozen=True):
     format: str
     by_rows: bool = False
     overscan: PixelRectangle | None = None
+    pixel_aspect: float = 1.0
 
 
 def find_layer(info: ImageInfo, name: str, suggest: Callable[[str], list[str]] | None = None) -> Layer:
@@ -113,7 +114,9 @@ def _match_name(info: ImageInfo, name: str) -> list[Layer]:
 def suggest_layers(layers: Sequence[Layer], name: str) -> list[str]:
     """The names of layers that are most similar to a name, at most three."""
     names = {normalize_name(layer.name): layer.name for layer in layers}
-    return [names[word] for word in difflib.get_close_matches(normalize_name(name), names, 3, 0.5)]
+    return [
+        names[word] for word in difflib.get_close_matches(normalize_name(name), names, 3, 0.5)
+    ]  # chosen by judgement: below difflib's 0.6, as one letter counts much in a short name
 
 
 def normalize_name(name: str) -> str:

@@ -75,6 +75,16 @@ def read_metadata(path: str | Path, sandbox: Sandbox) -> dict[str, int | float |
         return _unpack(attributes, _PACKED.get(handle.format_name(), ""))
 
 
+def set_pixel_aspect(metadata: Mapping[str, Any], aspect: float) -> dict[str, Any]:
+    """The attributes of a picture whose pixels are `aspect` times as wide as high.
+
+    What those of a picture with other pixels say of its resolution is left out.
+    """
+    if float(metadata.get(_ASPECTS[0], 1.0)) == aspect:
+        return dict(metadata)
+    return {name: item for name, item in metadata.items() if name not in _ASPECTS} | {_ASPECTS[0]: aspect}
+
+
 def is_structural(name: str) -> bool:
     """True for attributes that describe how this file is stored."""
     return _STRUCTURAL.fullmatch(name) is not None

@@ -150,7 +150,7 @@ def _find_video(path: str, sandbox: Sandbox) -> FrameSequence:
     return _make_video_sequence(path, video.count, video.rate)
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=16)  # chosen by judgement: the videos of a graph
 def _make_video_sequence(path: str, count: int, rate: Fraction) -> FrameSequence:
     name = Path(path).name
     pattern = Pattern(path, path[: len(path) - len(name)], (name,), ())
@@ -203,7 +203,7 @@ def suggest_pattern(path: str, sandbox: Sandbox) -> str | None:
     return folder + min(fitting, key=lambda text: (groups[text], text)) if fitting else None
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=64)  # chosen by judgement: the sequences of a graph
 def _match_names(pattern: Pattern, names: tuple[str, ...]) -> FrameSequence:
     names_by_frame: dict[int, str] = {}
     for name in names:
@@ -213,7 +213,7 @@ def _match_names(pattern: Pattern, names: tuple[str, ...]) -> FrameSequence:
     return FrameSequence(pattern, MappingProxyType(dict(sorted(names_by_frame.items()))))
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=16)  # chosen by judgement: the folders of a graph
 def _rank_patterns(names: tuple[str, ...]) -> Mapping[str, tuple[int, int]]:
     """The patterns that fit pictures among these files, with their rank: by count, then by the place of the number.
 
@@ -299,7 +299,7 @@ def _list_folder(folder: str, sandbox: Sandbox) -> tuple[str, ...]:
         raise InputError(f"{folder or '.'}: the folder cannot be read: {error.strerror or error}") from error
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=16)  # chosen by judgement: the folders of a graph
 def _scan_folder(folder: Path, written: int) -> tuple[str, ...]:
     with os.scandir(folder) as entries:
         return tuple(sorted(entry.name for entry in entries if entry.is_file()))

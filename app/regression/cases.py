@@ -31,6 +31,8 @@ class Metric:
 
 
 PER_PIXEL = ("max_rel", "max_abs")
+"""Measures of single pixels. The usual tolerances below are, for them, one step of 8 bits (1 / 255); for whole pictures
+they are chosen by judgement, where a difference is not visible yet."""
 METRICS = {
     item.name: item
     for item in (

@@ -18,6 +18,9 @@ from .cases import Case
 from .comparison import PictureParts
 from .results import PictureCheck, PictureViews
 
+_BRIGHTEST = 99.5
+"""The percentile of differences that is shown white, so that a few outliers do not hide the rest. Chosen by eye."""
+
 Array = np.ndarray
 
 _UNSAFE = re.compile(r"[^\w.+-]+")
@@ -55,7 +58,7 @@ def write_failure_pictures(
     Raises OutputError.
     """
     folder = folder / _UNSAFE.sub("_", case.suite.name.partition(".")[0]) / _UNSAFE.sub("_", case.name)
-    if reason := sandbox.fault(folder):
+    if reason := sandbox.find_write_fault(folder):
         raise OutputError(f"{folder}: {reason}")
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -97,9 +100,9 @@ def _subtract(actual: Array, expected: Array) -> Array:
 
 
 def _choose_gain(difference: Array) -> float:
-    """The factor that makes the 99.5th percentile of differences white, so that a few outliers do not hide the rest."""
+    """The factor that makes a high percentile of differences white."""
     differences = difference[np.isfinite(difference) & (difference > 0.0)]
-    return 1.0 / float(np.percentile(differences, 99.5)) if differences.size else 1.0
+    return 1.0 / float(np.percentile(differences, _BRIGHTEST)) if differences.size else 1.0
 
 
 def _measure_range(part: StoredPart) -> tuple[float, float]:

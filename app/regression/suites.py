@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from ..errors import DocumentError, UsageError
-from ..resources.folders import walk_project
+from ..errors import DocumentError, InputError, UsageError
+from ..resources.folders import find_matches, walk_project
 from ..resources.sandbox import Sandbox
 from .cases import ENDING, METRICS, PER_PIXEL, Case
 from .toml_tables import TomlTable, parse_toml, read_frames, read_goldens, read_inputs, read_size
@@ -62,7 +62,7 @@ def load_suite(path: Path, sandbox: Sandbox) -> tuple[Case, ...]:
         raise DocumentError(str(path), "cases", 'there is no case: begin one with [cases.NAME] and graph = "FILE"')
     cases_by_name: dict[str, Case] = {}
     for name in cases.items:
-        for case in _read_cases(path, name, cases.read_table(name), defaults):
+        for case in _read_cases(path, name, cases.read_table(name), defaults, sandbox):
             if case.name in cases_by_name:
                 raise DocumentError(str(path), f"cases.{name}", f"there are two cases '{case.name}'; rename one")
             cases_by_name[case.name] = case
@@ -70,58 +70,61 @@ def load_suite(path: Path, sandbox: Sandbox) -> tuple[Case, ...]:
     return tuple(cases_by_name.values())
 
 
-def _read_cases(path: Path, name: str, own: TomlTable, defaults: TomlTable) -> Iterator[Case]:
+def _read_cases(path: Path, name: str, own: TomlTable, defaults: TomlTable, sandbox: Sandbox) -> Iterator[Case]:
     """The case of a table; several where the name of its graph has wildcards."""
     own.refuse_other_keys(_KEYS)
-    both = own.merge_over(defaults)
-    pattern = both.read_text("graph")
+    merged = own.merge_over(defaults)
+    pattern = merged.read_text("graph")
     if not pattern:
-        raise both.make_fault("graph", 'which graph? Write graph = "FILE", relative to this file')
+        raise merged.make_fault("graph", 'which graph? Write graph = "FILE", relative to this file')
     if not any(sign in pattern for sign in "*?["):
-        yield _read_case(path, name, path.parent / pattern, own, both)
+        yield _read_case(path, name, path.parent / pattern, own, merged)
         return
-    graphs = sorted(item for item in path.parent.glob(pattern) if item.is_file())
+    try:
+        graphs = [Path(item) for item in find_matches(str(path.parent / pattern), sandbox) if Path(item).is_file()]
+    except InputError as fault:
+        raise merged.make_fault("graph", str(fault)) from None
     if not graphs:
-        raise both.make_fault("graph", f"no file is called {pattern}")
+        raise merged.make_fault("graph", f"no file is called {pattern}")
     for graph in graphs:
-        yield _read_case(path, f"{name}/{graph.stem}", graph, own, both)
+        yield _read_case(path, f"{name}/{graph.stem}", graph, own, merged)
 
 
-def _read_case(path: Path, name: str, graph: Path, own: TomlTable, both: TomlTable) -> Case:
-    """Read one case: `own` is its table, `both` the same over the defaults of the suite.
+def _read_case(path: Path, name: str, graph: Path, own: TomlTable, merged: TomlTable) -> Case:
+    """Read one case: `own` is its table, `merged` the same over the defaults of the suite.
 
     A case with a metric of its own does not take the suite's tolerance: that number belongs to the suite's metric.
     """
     if "metric" in own.items and "tolerance" not in own.items:
-        both = both.drop_key("tolerance")
-    metric = both.read_choice("metric", tuple(METRICS), "max_rel")
-    failing = both.read_number("failing", 0.0, 0.0, 100.0)
+        merged = merged.drop_key("tolerance")
+    metric = merged.read_choice("metric", tuple(METRICS), "max_rel")
+    failing = merged.read_number("failing", 0.0, 0.0, 100.0)
     if failing and metric not in PER_PIXEL:
-        raise both.make_fault("failing", f"pixels may fail with the metrics max_rel and max_abs, not with {metric}")
-    error = both.read_text("error")
+        raise merged.make_fault("failing", f"pixels may fail with the metrics max_rel and max_abs, not with {metric}")
+    error = merged.read_text("error")
     if "error" in own.items and not error:
-        raise both.make_fault("error", "give some words of the sentence that rendering must fail with")
+        raise merged.make_fault("error", "give some words of the sentence that rendering must fail with")
     if error and own.items.get("golden"):
-        raise both.make_fault("golden", "a case that must fail gives no picture: leave out golden or error")
+        raise merged.make_fault("golden", "a case that must fail gives no picture: leave out golden or error")
     return Case(
         path,
         name,
         graph,
-        read_inputs(both, path.parent),
-        both.read_table("set").items,
-        read_frames(both),
-        read_size(both),
-        both.read_number("scale", 1.0, 0.0, 1.0),
-        both.read_text("node"),
-        () if error else read_goldens(both, path.parent, name, graph.stem),
+        read_inputs(merged, path.parent),
+        merged.read_table("set").items,
+        read_frames(merged),
+        read_size(merged),
+        merged.read_number("scale", 1.0, 0.0, 1.0),
+        merged.read_text("node"),
+        () if error else read_goldens(merged, path.parent, name, graph.stem),
         metric,
-        both.read_number("tolerance", METRICS[metric].tolerance, None, None),
+        merged.read_number("tolerance", METRICS[metric].tolerance, None, None),
         failing,
-        both.read_choice("precision", ("half", "float"), "half"),
-        both.read_text("view"),
+        merged.read_choice("precision", ("half", "float"), "half"),
+        merged.read_text("view"),
         error,
-        both.read_choices("allow", _EXCEPTIONS),
-        both.read_text("skip"),
+        merged.read_choices("allow", _EXCEPTIONS),
+        merged.read_text("skip"),
     )
 
 

@@ -16,6 +16,9 @@ from ..graph.frames import parse_frames
 from ..resources.sandbox import Sandbox
 from .cases import Golden
 
+_MOST_PIXELS = 10**6
+"""Pixels of a side, from which on a number is taken for a typing error."""
+
 
 def parse_toml(path: Path, sandbox: Sandbox) -> dict[str, Any]:
     """The tables of a TOML file. Raises DocumentError."""
@@ -138,7 +141,7 @@ def read_size(table: TomlTable) -> tuple[int, int] | None:
         return None
     if isinstance(sides, list) and len(cast("list[Any]", sides)) == 2:
         texts = [str(side) for side in cast("list[Any]", sides)]
-        if all(text.isascii() and text.isdecimal() and 0 < int(text) < 10**6 for text in texts):
+        if all(text.isascii() and text.isdecimal() and 0 < int(text) < _MOST_PIXELS for text in texts):
             return int(texts[0]), int(texts[1])
     raise table.make_fault("size", 'write "WIDTHxHEIGHT" in pixels, such as "480x270"')
 

@@ -57,6 +57,43 @@ _INLIER_PIXELS = 1.0
 _WORST_MEDIAN_PIXELS = 0.5
 """Pixels. A camera with a larger median error explains nothing."""
 
+_REPORT_MEDIANS = 6.0
+_FIT_MEDIANS = 5.0
+"""A point that is farther off than so many medians is an outlier of the report, or of a fit. Of errors that are
+normally distributed in the plane 2^-25 exceed five medians and 2^-36 six, so noise alone excludes none of the
+sample. With a third and with three times as many all tests pass."""
+
+_SMALLEST_LIMIT = 1e-6
+"""Pixels. Exact positions in double precision differ by less, and none of them is an outlier."""
+
+_EXPLAINED_SHARE = 0.5
+"""Share of the points that a camera must explain: of two cameras that do, both would have points in common."""
+
+_CLEAN_SHARE = 0.9
+"""Share of the points that a first fit must explain, so that no consensus is needed: a shortcut that saves time."""
+
+_CONSENSUS_REACH = 1.5
+"""Times `_INLIER_PIXELS`. The camera through six points alone is less exact than a fit, so its inliers may be farther
+off; the fits that follow are strict again. Chosen by judgement: with 4.5 all tests pass, with 0.45 not."""
+
+_FLAT_DEPTH = 1e-5
+"""Change of depth over the spread of the points, relative to the depth, below which there is no perspective: floats of
+32 bits have 6e-8, which is 0.6 % of that."""
+
+_SINGULAR = 1e-6
+"""Share of the largest singular value below which another one is 0: positions are floats of 32 bits, off by 6e-8."""
+
+_OPEN_RATIO = 0.3
+"""Of the two smallest singular values: 0 if one matrix explains all points, 1 if any mixture of two does so as well.
+Chosen by judgement: with 0.9 all tests pass, with 0.09 not."""
+
+_TINY = 1e-12
+"""A length or a determinant of rows near 1 that is 0 but for the rounding of doubles, which is 2e-16 an operation."""
+
+_FEWEST_REPEATS = 3.0
+"""Pixels of a small picture that may share a position whatever their share is. Chosen by judgement: with 9 all tests
+pass, with 0.9 not."""
+
 _REPEATED_SHARE = 0.01
 """Share of the pixels. A position that more pixels have is the renderer's mark for the background. Chosen by
 judgement."""
@@ -116,8 +153,8 @@ def solve_camera(position: Array, depth: Array | None = None) -> CameraSolution:
         raise InputError("too few pixels have a position")
     matrix = _fit_robustly(correspondences.select(_find_inliers(correspondences)))
     error = correspondences.reprojection_error(matrix)
-    close = error < max(_INLIER_PIXELS, 6.0 * float(np.median(error)))
-    if float(np.median(error)) > _WORST_MEDIAN_PIXELS or np.count_nonzero(close) < 0.5 * len(error):
+    close = error < max(_INLIER_PIXELS, _REPORT_MEDIANS * float(np.median(error)))
+    if float(np.median(error)) > _WORST_MEDIAN_PIXELS or np.count_nonzero(close) < _EXPLAINED_SHARE * len(error):
         raise InputError(_NO_PINHOLE)
     camera = CameraModel(tuple(float(part) for part in matrix.ravel()))
     return CameraSolution(
@@ -156,7 +193,7 @@ def find_surface_points(places: Array) -> Array:
     if good.any():
         mixed = places[good] @ _MIXER
         _, which, counts = np.unique(mixed, return_inverse=True, return_counts=True)
-        good[good] = counts[which] <= max(3.0, _REPEATED_SHARE * len(places))
+        good[good] = counts[which] <= max(_FEWEST_REPEATS, _REPEATED_SHARE * len(places))
     return good
 
 
@@ -185,7 +222,7 @@ def _fit_robustly(correspondences: _Correspondences) -> Array:
     for _ in range(_FIT_ROUNDS):
         matrix = _fit_linearly(inliers, weights)
         error = correspondences.reprojection_error(matrix)
-        limit = max(1e-6, 5.0 * float(np.median(error)))
+        limit = max(_SMALLEST_LIMIT, _FIT_MEDIANS * float(np.median(error)))
         keep = error <= limit
         if not np.isfinite(limit) or np.count_nonzero(keep) < _FEWEST_POINTS:
             break
@@ -208,7 +245,7 @@ def _fit_linearly(correspondences: _Correspondences, weights: Array) -> Array:
     )
     matrix = np.array([[0.5, 0.0, 0.5], [0.0, 0.5, 0.5], [0.0, 0.0, 1.0]]) @ solved @ shift
     length = float(np.linalg.norm(matrix[2, :3]))
-    if length * spread < 1e-5 * abs(float(matrix[2] @ np.append(middle, 1.0))):
+    if length * spread < _FLAT_DEPTH * abs(float(matrix[2] @ np.append(middle, 1.0))):
         raise InputError("the picture has no perspective: its camera is orthographic, or everything is far away")
     ahead = float(np.median(correspondences.points @ matrix[2]))
     return matrix / (length if ahead > 0.0 else -length)
@@ -217,7 +254,7 @@ def _fit_linearly(correspondences: _Correspondences, weights: Array) -> Array:
 def _solve_without_depth(places: Array, at: Array, weights: Array) -> Array:
     """Without depth: the direction in which the equations of all pixels are closest to zero."""
     _, sizes, rows = np.linalg.svd(_reduce_rows(_make_equations(places * weights[:, None], at)))
-    if sizes[-2] < 1e-6 * sizes[0] or sizes[-1] > 0.3 * sizes[-2]:
+    if sizes[-2] < _SINGULAR * sizes[0] or sizes[-1] > _OPEN_RATIO * sizes[-2]:
         raise InputError("the positions lie in one plane, or are too coarse, which leaves the camera open")
     return rows[-1].reshape(3, 4)
 
@@ -233,7 +270,7 @@ def _reduce_rows(rows: Array) -> Array:
 def _solve_with_depth(places: Array, at: Array, depths: Array) -> Array:
     sides = np.concatenate([at, np.ones((len(at), 1))], axis=1)
     rows, _, rank, sizes = np.linalg.lstsq(places / depths[:, None], sides, rcond=None)
-    if rank < 4 or sizes[-1] < 1e-6 * sizes[0]:
+    if rank < 4 or sizes[-1] < _SINGULAR * sizes[0]:
         raise InputError("the positions lie in one plane, which leaves the camera open")
     return rows.T
 
@@ -253,9 +290,9 @@ def _find_inliers(correspondences: _Correspondences) -> Array:
             correspondences.reprojection_error(_fit_linearly(correspondences, np.ones(len(correspondences.points))))
             < _INLIER_PIXELS
         )
-        if np.count_nonzero(good) > 0.9 * len(good):
+        if np.count_nonzero(good) > _CLEAN_SHARE * len(good):
             return good
-    return correspondences.reprojection_error(_fit_by_consensus(correspondences)) < 1.5 * _INLIER_PIXELS
+    return correspondences.reprojection_error(_fit_by_consensus(correspondences)) < _CONSENSUS_REACH * _INLIER_PIXELS
 
 
 def _fit_by_consensus(correspondences: _Correspondences) -> Array:
@@ -320,7 +357,7 @@ def _from_projection(matrix: Array) -> CameraModel | None:
     """The camera of a projection of the world; None if it has no perspective."""
     rows = matrix[[0, 1, 3]]
     length = float(np.linalg.norm(rows[2, :3]))
-    if length < 1e-12:
+    if length < _TINY:
         return None
     rows = rows / length
     center = rows[:2, :3] @ rows[2, :3]
@@ -332,7 +369,7 @@ def _from_projection(matrix: Array) -> CameraModel | None:
 def _from_placement(matrix: Array, window: float, aspect: float) -> CameraModel | None:
     """The camera from its position, and the width of the picture at distance 1. Left-handed cameras look along +z."""
     length = float(np.linalg.norm(matrix[2, :3]))
-    if length < 1e-12:
+    if length < _TINY:
         return None
     axes = matrix[:3] / length
     ahead = axes[2] if np.linalg.det(axes[:, :3]) < 0.0 else -axes[2]
@@ -341,6 +378,6 @@ def _from_placement(matrix: Array, window: float, aspect: float) -> CameraModel 
 
 def _make_camera(rows: Array) -> CameraModel | None:
     """The camera with these rows; None if they are linearly dependent, so that nothing is visible."""
-    if abs(np.linalg.det(rows[:, :3])) < 1e-12:
+    if abs(np.linalg.det(rows[:, :3])) < _TINY:
         return None
     return CameraModel(tuple(float(part) for part in rows.ravel()))

@@ -59,6 +59,49 @@ _LIKELY_FACTOR = 1.15
 """How many times worse the next direction must fit than the best one. On four pairs of those frames it is 1.39 to
 1.61."""
 
+_UNCLAMPED_SHARE = 0.1
+"""Share of a depth from 0 to 1 that must lie between: the rest is clamped and tells nothing. Chosen by judgement:
+with a third and with three times as much all tests pass, as for the next two."""
+
+_LEAST_RANGE = 1e-3
+"""How much of 0..1 a normalized depth must use: any line fits what is nearly constant. Chosen by judgement."""
+
+_OUTLIER_MEDIANS = 6.0
+"""Errors beyond so many medians are outliers: of normally distributed ones 5e-5 are. `_ROUNDING` keeps exact values,
+whose median is 0."""
+
+_ROUNDING = 1e-12
+_BEND_STEPS = 48
+"""The arms of a cross are this part of the picture's smaller side: long enough that floats of 32 bits show the bend of
+radial depth, short enough that most crosses lie on one wall. Chosen by judgement."""
+
+_NEGATIVE_SHARE = 0.99
+"""Share of the pixels below zero for negative depth: a few may be damaged or background."""
+
+_HOME_DISTANCE = 1e-3
+_HOME_ALIGNMENT = 0.9999
+"""A camera stands at 0 if it is nearer than this, relative to the positions, and looks along an axis if the cosine
+is at least this (0.8 degrees). Cameras that were solved from positions around 0 are off by 2e-9 as floats and 6e-5 as
+halves."""
+
+_UNIT_LENGTH = 0.05
+_ENCODED_LENGTH = 0.02
+"""How far the length of a normal may be from 1: 8 bits are off by up to 0.007 (half a step of 2/255 along each axis,
+times the square root of 3). Averages at edges are shorter and left out."""
+
+_HOME_ANGLE = 0.5
+"""Degrees by which other axes must fit better than those of positions: normals of 8 bits alone differ by 0.3."""
+
+_STILL = 1e-9
+"""A ratio of stored to true motion that is 0 but for rounding: there is no motion in the layer."""
+
+_MOTION_ERROR = 0.02
+"""The largest median error of motion, relative to the median motion, plus so many pixels: half floats are off by up to
+5e-4, and moving objects do not count in the median. Chosen by judgement."""
+
+_UNIT_ERROR = 0.02
+"""How far a unit of motion may be from a usual one: the next usual one is a factor of 2 away. Chosen by judgement."""
+
 
 def match_depth_with_positions(depth: Array, position: Array, camera: CameraModel) -> Convention | None:
     """The kind of a depth [h, w], compared with the distances of positions [h, w, 3]; None if no kind fits."""
@@ -94,7 +137,7 @@ def _match_normalized_depth(stored: Array, ahead: Array) -> Convention | None:
         return None
     free = (stored > 0.0) & (stored < 1.0)
     stored, ahead = stored[free], ahead[free]
-    if len(stored) < max(_FEWEST_SAMPLES, 0.1 * len(free)) or float(np.ptp(stored)) < 1e-3:
+    if len(stored) < max(_FEWEST_SAMPLES, _UNCLAMPED_SHARE * len(free)) or float(np.ptp(stored)) < _LEAST_RANGE:
         return None
     keep = np.ones(len(stored), bool)
     scale = offset = 0.0
@@ -102,7 +145,7 @@ def _match_normalized_depth(stored: Array, ahead: Array) -> Convention | None:
     for _ in range(3):
         scale, offset = (float(part) for part in np.polyfit(stored[keep], ahead[keep], 1))
         error = np.abs(stored * scale + offset - ahead) / ahead
-        keep = error <= 6.0 * float(np.median(error)) + 1e-12
+        keep = error <= _OUTLIER_MEDIANS * float(np.median(error)) + _ROUNDING
     if float(np.median(error)) > _WORST_DEPTH_ERROR:
         return None
     reason = f"0 is {offset:.4g} and 1 is {offset + scale:.4g} along the camera's axis, by the positions"
@@ -118,7 +161,7 @@ def judge_depth_by_planes(depth: Array) -> Convention | None:
     """
     height, width = depth.shape[:2]
     depth = depth.reshape(height, width)
-    reach = max(1, min(width, height) // 48)
+    reach = max(1, min(width, height) // _BEND_STEPS)
     if min(width, height) < 2 * reach + 3:
         return None
     rows, columns = sample_pixels((width, height), 4 * SAMPLES, reach)
@@ -127,7 +170,7 @@ def judge_depth_by_planes(depth: Array) -> Convention | None:
     at = np.stack([rows, columns], axis=1) + steps[:, None]
     cross = depth[at[..., 0], at[..., 1]].astype(np.float64)
     finite = np.isfinite(cross[0]) & (np.abs(cross[0]) < FARTHEST)
-    is_negative = finite.any() and bool((cross[0][finite] < 0.0).mean() > 0.99)
+    is_negative = finite.any() and bool((cross[0][finite] < 0.0).mean() > _NEGATIVE_SHARE)
     cross = -cross if is_negative else cross
     with np.errstate(invalid="ignore"):
         keep = ((cross > 0.0) & (cross < FARTHEST)).all(axis=0) & (cross[1:] != cross[0]).any(axis=0)
@@ -175,9 +218,10 @@ def find_position_space(camera: CameraModel, position: Array) -> Convention:
     places = position[rows, columns, :3].astype(np.float64)
     places = places[find_surface_points(places)]
     size = float(np.median(np.linalg.norm(places, axis=1))) if len(places) else 1.0
-    home = math.hypot(*camera.eye) < 1e-3 * size
+    home = math.hypot(*camera.eye) < _HOME_DISTANCE * size
     for space, ahead in ((VectorSpace.CAMERA, -1.0), (VectorSpace.CAMERA_AHEAD, 1.0)):
-        if home and camera.forward[2] * ahead > 0.9999 and camera.right[0] > 0.9999 and camera.down[1] < -0.9999:
+        alignment = min(camera.forward[2] * ahead, camera.right[0], -camera.down[1])
+        if home and alignment > _HOME_ALIGNMENT:
             return Convention(space, "the camera that sees them stands at 0 and looks along z", True)
     eye = ", ".join(f"{part:.4g}" for part in camera.eye)
     return Convention(VectorSpace.WORLD, f"the camera that sees them stands at {eye}", True)
@@ -216,7 +260,7 @@ def match_normals_with_positions(
     with np.errstate(invalid="ignore", over="ignore"):
         length = np.linalg.norm(stored, axis=1)
         keep = np.all([find_surface_points(places) for places in place.values()], axis=0) & (
-            np.abs(length - 1.0) < 0.05
+            np.abs(length - 1.0) < _UNIT_LENGTH
         )
     facing = np.cross(place[0, 1][keep] - place[0, -1][keep], place[1, 0][keep] - place[-1, 0][keep])
     facing *= np.sign(((np.array(camera.eye) - place[0, 0][keep]) * facing).sum(axis=1))[:, None]
@@ -232,7 +276,7 @@ def match_normals_with_positions(
     }
     angles = {space: _median_angle(stored, facing @ turned.T) for space, turned in axes.items()}
     space = min(angles, key=lambda space: angles[space])
-    if angles[home] < angles[space] + 0.5:
+    if angles[home] < angles[space] + _HOME_ANGLE:
         space = home
     if angles[space] > _WORST_ANGLE:
         return None
@@ -248,8 +292,8 @@ def _find_normal_encoding(vectors: Array) -> tuple[float, float]:
     if len(vectors_there) and vectors_there.min() >= 0.0 and vectors_there.max() <= 1.0:
         off = np.abs(np.linalg.norm(2.0 * vectors_there - 1.0, axis=1) - 1.0)
         if (
-            float(np.median(off)) < 0.02
-            and float(np.median(np.abs(np.linalg.norm(vectors_there, axis=1) - 1.0))) > 0.02
+            float(np.median(off)) < _ENCODED_LENGTH
+            and float(np.median(np.abs(np.linalg.norm(vectors_there, axis=1) - 1.0))) > _ENCODED_LENGTH
         ):
             return 2.0, -1.0
     return 1.0, 0.0
@@ -282,12 +326,12 @@ def match_velocity_with_cameras(
     for axis in (0, 1):
         moves = np.abs(moved[:, axis]) > _LEAST_MOTION
         ratio = float(np.median(stored[moves, axis] / moved[moves, axis])) if moves.sum() >= _FEWEST_SAMPLES else 0.0
-        if abs(ratio) < 1e-9:
+        if abs(ratio) < _STILL:
             return None
         ratios.append(1.0 / ratio)
     scale, unit = _find_unit((ratios[0], ratios[1]), (width, height))
     off = np.abs(stored * scale - moved)
-    if float(np.median(off)) > 0.02 * float(np.median(np.abs(moved))) + 0.02:
+    if float(np.median(off)) > _MOTION_ERROR * float(np.median(np.abs(moved))) + _MOTION_ERROR:
         return None
     way = "current minus previous" if scale[0] > 0.0 else "previous minus current"
     up = "down" if (scale[0] > 0.0) == (scale[1] > 0.0) else "up"
@@ -305,7 +349,7 @@ def _find_unit(ratios: tuple[float, float], size: tuple[int, int]) -> tuple[tupl
     """Factors to pixels, exact if the unit is a usual one, and its name."""
     units = (("in pixels", (1.0, 1.0)), ("in pictures", size), ("in half pictures", (size[0] / 2, size[1] / 2)))
     for name, usual in units:
-        if all(abs(abs(ratio) / factor - 1.0) < 0.02 for ratio, factor in zip(ratios, usual, strict=True)):
+        if all(abs(abs(ratio) / factor - 1.0) < _UNIT_ERROR for ratio, factor in zip(ratios, usual, strict=True)):
             return (math.copysign(usual[0], ratios[0]), math.copysign(usual[1], ratios[1])), name
     return ratios, f"in pixels times {1.0 / abs(ratios[0]):.4g}"
 

@@ -17,6 +17,9 @@ from ..media.layers import Layer, normalize_name, suggest_layers
 from .naming import HINTS, PATTERNS, SCHEMES, RenderProgram, Role
 
 _GROUP = re.compile(r"(?:combined|rgba?|beauty|(?:vray)?light_?select)_(.+)", re.IGNORECASE)
+_KARMA_GROUP = re.compile(r"C_(.+)")
+"""Karma splits its beauty, C, by the tag that lights have for light path expressions (LPE Tag in Houdini's manual)."""
+
 _RANKS = re.compile(r"u?(?P<name>.*crypto.*?)(?P<rank>\d\d)?", re.IGNORECASE)
 _CRYPTOMATTES = (
     ("material", Role.CRYPTOMATTE_MATERIAL),
@@ -106,8 +109,9 @@ def find_light_groups(passes: Iterable[RenderPass]) -> dict[str, Layer]:
     """The layers of light groups by the names of the groups, in the view layer of the picture."""
     passes = tuple(passes)
     home = next((item.group for item in passes if item.role is Role.BEAUTY), "")
-    matches = [(item, _GROUP.fullmatch(item.name)) for item in passes if item.role is Role.LIGHT_GROUP]
-    return {match[1]: item.layer for item, match in matches if match and item.group == home}
+    groups = [item for item in passes if item.role is Role.LIGHT_GROUP and item.group == home]
+    matches = [(item, _GROUP.fullmatch(item.name) or _KARMA_GROUP.fullmatch(item.name)) for item in groups]
+    return {match[1]: item.layer for item, match in matches if match}
 
 
 def find_named_role(name: str) -> Role | None:
@@ -169,7 +173,7 @@ def _recognize_pass(layer: Layer, name: str, renderer: RenderProgram | None, man
     for recognized in (
         _recognize_cryptomatte(layer, manifests),
         _recognize_by_table(layer, word, renderer),
-        _recognize_light_group(layer, name),
+        _recognize_light_group(layer, name, renderer),
         _recognize_by_pattern(layer, word),
         _recognize_by_channels(layer, word),
     ):
@@ -221,8 +225,8 @@ def _recognize_by_table(layer: Layer, word: str, renderer: RenderProgram | None)
     )
 
 
-def _recognize_light_group(layer: Layer, last: str) -> RenderPass | None:
-    match = _GROUP.fullmatch(last)
+def _recognize_light_group(layer: Layer, last: str, renderer: RenderProgram | None) -> RenderPass | None:
+    match = _GROUP.fullmatch(last) or (_KARMA_GROUP.fullmatch(last) if renderer is RenderProgram.KARMA else None)
     if match is None or layer.is_data:
         return None
     return RenderPass(layer, Role.LIGHT_GROUP, RoleGrounds.PATTERN, f"named like the light of the group '{match[1]}'")

@@ -55,7 +55,8 @@ def describe_size(analysis: RenderAnalysis) -> str:
     """Size, format, and how many parts and layers."""
     info = analysis.header.info
     counts = f"{_format_count(len(analysis.header.parts), 'part')}, {_format_count(len(info.layers), 'layer')}"
-    return f"{info.size[0]} x {info.size[1]}, {info.format}, {counts}"
+    shape = f", pixel aspect {info.pixel_aspect:g}" if info.pixel_aspect != 1.0 else ""
+    return f"{info.size[0]} x {info.size[1]}{shape}, {info.format}, {counts}"
 
 
 def describe_maker(analysis: RenderAnalysis) -> str:

@@ -50,7 +50,9 @@ class BaselineComparison:
 
     def find_slower(self, limit: float) -> tuple[Ratio, ...]:
         """The ratios above a limit, the largest first."""
-        return tuple(sorted((ratio for ratio in self.ratios if ratio.smaller > limit), key=lambda one: -one.smaller))
+        return tuple(
+            sorted((ratio for ratio in self.ratios if ratio.smaller > limit), key=lambda ratio: -ratio.smaller)
+        )
 
 
 def compare_with_baseline(bench: Benchmark, path: Path, sandbox: Sandbox) -> BaselineComparison:

@@ -27,7 +27,9 @@ from .device import Device
 from .execution.runner import Runner
 
 SIZE = (1024, 1024)
+"""Large enough that a pass takes longer than to start it: a megapixel."""
 TURNS = 5
+"""How often each form is measured at most, in turn; the quickest counts. Chosen by judgement."""
 ENOUGH_SECONDS = 0.1
 """Seconds of passes after which no further turn is taken: times of a slow device vary less. Chosen by judgement; a
 start of the program should not take noticeably longer for it."""
@@ -45,7 +47,7 @@ def load_or_measure(device: Device, folder: Path | None = None, *, sandbox: Sand
     `folder` is by default that of the user.
     """
     path = (folder or timings_folder()) / f"{_PREFIX}{_hash_device(device)}.json"
-    if sandbox.fault(path):
+    if sandbox.find_write_fault(path):
         return None
     if (stored := _read_timings(path, sandbox=sandbox)) is not None:
         return stored

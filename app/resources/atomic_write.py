@@ -20,7 +20,7 @@ import glob
 import os
 import stat
 import time
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Iterable
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -118,7 +118,7 @@ def check_replaceable(path: str | Path, sandbox: Sandbox) -> None:
         OutputError: it is one of these, or the sandbox forbids the path.
         OSError, ValueError: the system cannot tell.
     """
-    if reason := sandbox.fault(path):
+    if reason := sandbox.find_write_fault(path):
         raise OutputError(f"{path}: {reason}")
     try:
         mode = Path(path).stat().st_mode
@@ -182,6 +182,16 @@ def find_temporary_files(folder: str | Path, name: str = "") -> tuple[Path, ...]
         return tuple(Path(folder).glob(f"{_PREFIX}*{ending}"))
     except OSError:
         return ()
+
+
+def remove_files_of(processes: Iterable[int], paths: Iterable[str | Path]) -> None:
+    """Remove what killed processes have begun to write beside these paths."""
+    numbers = tuple(processes)
+    for folder in {Path(os.path.realpath(path)).parent for path in paths}:
+        for number in numbers:
+            for part in folder.glob(f"{temporary_prefix(number)}*"):
+                with contextlib.suppress(OSError):
+                    part.unlink()
 
 
 def remove_abandoned_files(folder: str | Path, name: str = "") -> None:

@@ -32,7 +32,7 @@ class Watchdog:
 
     def __init__(self, file: Path, timeout: float, memory: int = 0, tries_first: bool = False) -> None:
         self._file, self._timeout, self._tries_first = file, timeout, tries_first
-        self._memory = (memory or machine_memory() / 2) + OWN_MEMORY
+        self._memory, self._has_memory_option = (memory or machine_memory() / 2) + OWN_MEMORY, memory > 0
         self._beat, self._since, self._idle_memory = "", time.monotonic(), 0
         file.touch()
 
@@ -56,7 +56,7 @@ class Watchdog:
         if heartbeat and memory - self._idle_memory > self._memory:
             return self._fault(
                 f"takes more than {self._memory / 2**30:.1f} GiB of memory, so the render was stopped: "
-                "make the code smaller, or raise --memory"
+                f"make the code smaller{', or raise --memory' if self._has_memory_option else ''}"
             )
         return None
 

@@ -10,12 +10,13 @@ import difflib
 import hashlib
 import os
 import stat
-from collections.abc import Iterable
+from collections.abc import Collection
 from io import BufferedReader
 from pathlib import Path, PurePath
 
 from ..errors import InputError
 from .sandbox import Sandbox, make_path_printable
+from .suggestions import may_compare
 
 _OPEN_FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0) | getattr(os, "O_BINARY", 0)
 """Windows has only the last of them, and needs it."""
@@ -123,22 +124,26 @@ def _describe_missing(path: Path) -> str:
     try:
         if not path.parent.is_dir():
             return "there is no such file; its folder is missing too"
-        guess = find_similar_name(path.name, (item.name for item in path.parent.iterdir()))
+        names = os.listdir(path.parent) if may_compare() else ()  # noqa: PTH208 - of many files, names are enough
+        guess = find_similar_name(path.name, names)
     except (OSError, ValueError):
         return "no file can have such a name: check it"
     return f"there is no such file; did you mean '{guess}'?" if guess else "there is no such file: check the name"
 
 
-def find_similar_name(name: str, names: Iterable[str]) -> str:
+def find_similar_name(name: str, names: Collection[str]) -> str:
     """The most similar of the names of files, for a suggestion; "" if none is similar.
 
     What stands before the first dot must be similar, in capitals or not: all names of a folder of pictures may end
     alike, and then `nope.exr` looks like each of them. The endings must be of one kind: `shot.log` is no suggestion for
-    `shot.exr`.
+    `shot.exr`. Of many faults only the first get suggestions (`limit_suggestions`).
     """
+    if not may_compare(len(names)):
+        return ""
     names_by_stem: dict[str, list[str]] = {}
+    ending = _find_ending(name)
     for candidate in names:
-        if not _may_stand_for(_find_ending(candidate), _find_ending(name)):
+        if not _may_stand_for(_find_ending(candidate), ending):
             continue
         names_by_stem.setdefault(_find_stem(candidate), []).append(candidate)
     stems = difflib.get_close_matches(_find_stem(name), names_by_stem, 1)

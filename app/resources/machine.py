@@ -42,16 +42,17 @@ def has_memory_limit() -> bool:
     return memory_limit() < math.inf
 
 
-def is_memory_scarce() -> bool:
-    """True if this process came near its limit of address space, so that requests for more may have been refused.
+_SCARCE = 0.75
+"""The part of the limit that is near it: libraries ask for 64 to 256 MiB at a time (arenas of malloc, code of LLVM)."""
 
-    Near is three quarters: libraries ask for 64 to 256 MiB at a time (arenas of malloc, code of LLVM).
-    """
+
+def is_memory_scarce() -> bool:
+    """True if this process came near its limit of address space, so that requests for more may have been refused."""
     try:
         peak = re.search(r"VmPeak:\s*(\d+)", Path("/proc/self/status").read_text("ascii"))
     except OSError:
         return False
-    return peak is not None and int(peak[1]) * 1024 > 0.75 * memory_limit()
+    return peak is not None and int(peak[1]) * 1024 > _SCARCE * memory_limit()
 
 
 def resident_memory(process: int) -> int:

@@ -24,6 +24,8 @@ class PictureProbe(Struct, frozen=True):
     """Whether rows of it can be read alone."""
     overscan: PixelRectangle | None = None
     """Its frame and all pixels that it has around it; None where there are none."""
+    pixel_aspect: float = 1.0
+    """The width of a pixel over its height."""
 
 
 class FrameFile(Struct, frozen=True):

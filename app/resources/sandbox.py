@@ -11,6 +11,8 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
+from halation import presets
+
 from ..errors import InputError, UsageError
 
 ROOT_VARIABLE = "HALATION_ROOT"
@@ -23,8 +25,16 @@ class Sandbox:
 
     root: str
 
-    def fault(self, path: str | Path) -> str:
-        """Why a file may not be read or written, as the rest of a sentence that starts with its path; "" if it may be.
+    def find_read_fault(self, path: str | Path) -> str:
+        """Why a file may not be read, as the rest of a sentence that starts with its path; "" if it may be.
+
+        The presets of Halation itself, and their samples, may be read wherever they are installed.
+        """
+        fault = self.find_write_fault(path)
+        return "" if fault and _is_of_presets(path) else fault
+
+    def find_write_fault(self, path: str | Path) -> str:
+        """Why a file may not be written, as the rest of a sentence that starts with its path; "" if it may be.
 
         Links are followed: what counts is where a file really lies. What is not there yet counts by its folder.
         """
@@ -42,12 +52,12 @@ class Sandbox:
 
     def check(self, path: str | Path) -> None:
         """Raise InputError for a file that may not be read."""
-        if fault := self.fault(path):
+        if fault := self.find_read_fault(path):
             raise InputError(f"{make_path_printable(path)}: {fault}")
 
     def narrow(self, folder: str | Path) -> Sandbox:
         """The sandbox of a folder inside this one. Raises UsageError for a folder outside, and for what is none."""
-        if fault := self.fault(folder):
+        if fault := self.find_write_fault(folder):
             raise UsageError(f"--root {folder}: {fault}")
         if not Path(folder).is_dir():
             raise UsageError(f"--root {folder}: there is no such folder")
@@ -62,6 +72,14 @@ def read_process_sandbox() -> Sandbox:
     """The sandbox that the environment of this process asks for. Only commands and the Python interface call this."""
     root = os.environ.get(ROOT_VARIABLE, "")
     return Sandbox(str(Path(root).resolve())) if root else UNRESTRICTED
+
+
+def _is_of_presets(path: str | Path) -> bool:
+    """True for a file in the folder of presets of this installation, also behind links."""
+    try:
+        return Path(path).resolve().is_relative_to(Path(presets.__file__).resolve().parent)
+    except (OSError, RuntimeError, ValueError):
+        return False
 
 
 def make_path_printable(path: str | Path) -> str:

@@ -79,7 +79,7 @@ class ShaderNames(Struct):
             value = tuple(_float32(part) for part in item.value)
             if glsl.endswith("]"):
                 return self.uniform(glsl, value)
-            if item.channels == 9:
+            if item.channels == 9:  # a mat3
                 return self.uniform("mat3", value)
             return convert(self.uniform(glsl_type(item.channels), value), item.channels, glsl)
         if glsl == "bool":

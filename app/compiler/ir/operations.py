@@ -43,6 +43,8 @@ class Read(SourceOp, frozen=True):
     half: bool
     data_window: Region | None = None
     """The pixels that the file has, where they are more than the frame."""
+    pixel_aspect: float = 1.0
+    """The width of a pixel over its height, as the file is to be shown."""
 
     def find_upload(self, output: int) -> Picture:
         return self.picture
@@ -201,10 +203,13 @@ class Gather(FunctionOp, frozen=True, kw_only=True):
     """Cheap enough to be computed within the pass that reads it: see `Library.light`."""
     warps: bool = False
     """Shows pixels of its picture at other places, which are known for the frame alone."""
+    stretches: bool = False
+    """Shows all of its picture in another number of pixels."""
 
     identity_exclude: ClassVar[Mapping[str, str]] = {
         "light": "it decides in which pass pixels are made, not which",
         "warps": "it decides where a picture ends, which the key of its pass says",
+        "stretches": "it decides the shape in which pixels are shown, not what is in them",
     }
 
     @property
@@ -357,6 +362,7 @@ def _find_blocks(span: Span, length: int) -> Span:
 
 
 def _count_padded_floats(item: UniformConstant) -> int:
+    """Floats with the padding of std140, where each column of a mat3 takes four."""
     return 12 if item.channels == 9 else -(-item.channels // 4) * 4
 
 

@@ -22,6 +22,17 @@ TOLERANCE = 1e-5
 """Relative difference that counts as rounding. Chosen by judgement: constants are computed in double precision and
 stored as floats of 24 bits (6e-8), and sums of ten terms lose another digit."""
 
+_LEAST_MAGNITUDE = 1e-3
+"""Numbers below it count as this large when they are compared: a thousandth of what most values are in GLSL, so that
+what rounds to 0 equals 0. Chosen by judgement."""
+
+_FAR_STEPS = 5.0
+"""Steps from the start to the point that checks a fit, where the samples lie within two: what bends shows there."""
+
+_TRIED_FACTORS = 9
+"""Factors around the measured one that are tried. Lengths are rounded by less than one pixel, which moves factors up to
+13 by less than one: samples of the picture are 192 pixels apart. For larger ones it is chosen by judgement."""
+
 MAX_FACTOR = 4096
 """How many times smaller than the picture a buffer may be along a side: a pyramid of twelve halvings, which ends at one
 pixel for 4096 pixels."""
@@ -47,7 +58,7 @@ class FittedKnob:
     @property
     def far(self) -> float:
         """A value far from the samples, where the fit is checked; of a switch, which has two values, the other one."""
-        return self.base + self.step * (1.0 if self.samples == 1 else 5.0)
+        return self.base + self.step * (1.0 if self.samples == 1 else _FAR_STEPS)
 
 
 @dataclass
@@ -120,7 +131,7 @@ class LinearModel:
         """
         constant = self.base.numbers[place]
         factors: dict[str, float] = {name: slopes[place] for name, slopes in self.slopes.items()}
-        magnitude = max(abs(constant), 1e-30)
+        magnitude = max(abs(constant), 1e-30)  # above 0, for a sum of nothing but zeros
         parts: list[str] = []
         for (first, second), slopes in self.products.items():
             if slope := slopes[place]:
@@ -161,7 +172,7 @@ def fit_slopes(take: Callable[[Point], Anatomy | None], base: Anatomy, knob: Fit
 def are_close(numbers: Sequence[float], references: Sequence[float]) -> bool:
     """True if numbers are equal but for rounding."""
     pairs = zip(numbers, references, strict=True)
-    return all(abs(a - b) <= TOLERANCE * max(abs(a), abs(b), 1e-3) for a, b in pairs)
+    return all(abs(a - b) <= TOLERANCE * max(abs(a), abs(b), _LEAST_MAGNITUDE) for a, b in pairs)
 
 
 def find_length_formula(canvas: Sequence[int], lengths: Sequence[int]) -> str | None:
@@ -177,7 +188,7 @@ def find_length_formula(canvas: Sequence[int], lengths: Sequence[int]) -> str | 
     if span <= 0:
         return None
     rough = (canvas[-1] - canvas[0]) / span
-    for factor in sorted(range(2, MAX_FACTOR), key=lambda k: abs(k - rough))[:9]:
+    for factor in sorted(range(2, MAX_FACTOR), key=lambda k: abs(k - rough))[:_TRIED_FACTORS]:
         low = max(length * factor - side for side, length in zip(canvas, lengths, strict=True))
         high = min((length + 1) * factor - 1 - side for side, length in zip(canvas, lengths, strict=True))
         if low <= high:

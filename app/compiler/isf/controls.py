@@ -75,13 +75,20 @@ def _make_control(shader_name: str, control: KnobControl) -> IsfControl:
     return IsfControl(control, entry, knobs)
 
 
+_STEP_SHARE = 0.0371
+"""Step between samples as a part of the slider's range: no node has such odd values as special ones, at which it might
+do nothing, and the farthest sample, after six steps, is within a quarter of the range."""
+
+_FARTHEST_STEPS = 6.0
+"""Steps to the farthest sample: the first is one step away, and the check of the fit another five."""
+
+
 def _make_knob(knob: Knob, text: str, value: Value) -> FittedKnob:
     name, rest = knob.name, knob.rest
     if value.type == "bool":
         return FittedKnob(name, text, rest, rest, 1.0 - 2.0 * rest, 1)
-    # A part of the range that no node has as a special value: at round values nodes may do nothing.
-    step = 1.0 if value.type == "int" else (knob.high - knob.low) * 0.0371
-    step = -step if rest + 6.0 * step > min(knob.high, value.maximum) else step
+    step = 1.0 if value.type == "int" else (knob.high - knob.low) * _STEP_SHARE
+    step = -step if rest + _FARTHEST_STEPS * step > min(knob.high, value.maximum) else step
     return FittedKnob(name, text, rest, rest + step, step)
 
 

@@ -27,6 +27,10 @@ from .model import HEIGHT, WIDTH, IsfModel, ModelSearch
 from .passes import find_obstacles
 from .writing import IsfWriter
 
+_SIDE_STEP = 96.0
+"""Pixels between two samples of the width or the height: whole blocks for pyramids of up to five halvings. Chosen by
+judgement; the sizes of pictures have samples of their own."""
+
 MAX_PASSES = 64
 """Passes that a shader may take. The format has no limit, but hosts compile all passes as one program. Of the 28
 presets that can be exported none takes more than 39."""
@@ -150,8 +154,8 @@ class _IsfExporter:
         return {
             **{knob.name: knob for control in self.controls for knob in control.knobs},
             FRAME: FittedKnob(FRAME, f"float(@FRAMEINDEX + {self.first})", self.first, self.first, 1.0, 3),
-            WIDTH: FittedKnob(WIDTH, "@halation_canvas.x", width, width, 96.0, resizes=True),
-            HEIGHT: FittedKnob(HEIGHT, "@halation_canvas.y", height, height, 96.0, resizes=True),
+            WIDTH: FittedKnob(WIDTH, "@halation_canvas.x", width, width, _SIDE_STEP, resizes=True),
+            HEIGHT: FittedKnob(HEIGHT, "@halation_canvas.y", height, height, _SIDE_STEP, resizes=True),
         }
 
     def _add_notes(self, model: IsfModel) -> None:

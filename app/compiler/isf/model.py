@@ -13,6 +13,9 @@ from ..knobs import FRAME, GraphSampler, Point
 from .affine import Anatomy, FittedKnob, LinearModel, are_close, find_length_formula, fit_slopes
 
 WIDTH, HEIGHT = "canvas.width", "canvas.height"
+_SIZE_STEPS = (0, 37, 91, 192)
+"""Pixels by which sizes are sampled. They differ by odd numbers, so that a formula that rounds wrongly fails at one of
+them."""
 """The names of the knobs of the picture's size. No control can have a name with a dot."""
 
 SizeFormulas = Mapping[Size, tuple[str, str]]
@@ -121,11 +124,8 @@ class ModelSearch:
         return sample.numbers if sample is not None and sample.structure == model.base.structure else None
 
     def _find_size_formulas(self, base: Anatomy) -> SizeFormulas | None:
-        """The sizes of all pictures as formulas; None if some size has none.
-
-        The steps differ by odd numbers, so that a formula that rounds wrongly fails at one of them.
-        """
-        steps = (0, 37, 91, 192)
+        """The sizes of all pictures as formulas; None if some size has none."""
+        steps = _SIZE_STEPS
         samples: list[Anatomy] = []
         for step in steps:
             sample = self._try_take({WIDTH: self.size[0] + step, HEIGHT: self.size[1] + step})
@@ -146,7 +146,13 @@ class ModelSearch:
         return texts
 
 
+_LEAST_EFFECT = 1e-7
+_LEAST_NUMBER = 1e-3
+"""A knob whose step changes a number by less than this part of it does not matter: floats of 32 bits would show nothing
+(6e-8). Numbers below the second one count as this large."""
+
+
 def _matters(model: LinearModel, name: str) -> bool:
     step = model.knobs[name].step
     numbers = zip(model.slopes[name], model.base.numbers, strict=True)
-    return any(abs(slope * step) > 1e-7 * max(abs(number), 1e-3) for slope, number in numbers)
+    return any(abs(slope * step) > _LEAST_EFFECT * max(abs(number), _LEAST_NUMBER) for slope, number in numbers)

@@ -95,8 +95,7 @@ class Recorder:
         self.typeset, self.expand_text = resources.typeset, partial(resources.expand_text, self)
         self._owner, self._inputs, self._node, self._shader = inputs.path, inputs, node, node.shader
         self._builder, self._library, self._resources = builder, library, resources
-        self._blurs = BlurBuilder(builder, library, inputs.path)
-        self._memories = memories
+        self._blurs, self._memories = BlurBuilder(builder, library, inputs.path), memories
         self.remembered: dict[str, Ref] = {}
 
     @property
@@ -192,6 +191,7 @@ class Recorder:
             edge=edge,
             light=light,
             warps=Trait.WARPS in self._node.traits,
+            stretches=Trait.STRETCHES in self._node.traits,
         )
 
     def point(self, function: str, /, *inputs: Socket, result: Socket | None = None, **arguments: Argument) -> Drawn:

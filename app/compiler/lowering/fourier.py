@@ -10,6 +10,7 @@ from msgspec import Struct
 from ..ir import Accessor, Builder, Choice, Gather, Parameter, PictureShape, Ref, UniformConstant
 
 _PRIMES = (2, 3, 5)
+"""Lengths are padded to products of these, of which there is one less than 11 % above any length from 64 pixels on."""
 
 _STAGE_COST = 14
 """What a stage costs besides its reads, in reads: measured on the software rasterizer. With a larger number, stages get

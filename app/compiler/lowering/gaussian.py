@@ -23,6 +23,9 @@ _DECIMATION_SIGMA = 0.8
 """Sigma of a decimation, in steps. The largest error is 3e-3 with 0.6 (aliasing), 4e-4 with 0.7, 2e-4 with 0.8, and no
 smaller with 1.0, which reads an eighth more."""
 
+_REACH = 4.0
+"""Sigmas to which a Gaussian is summed, scipy's `truncate`: 6e-5 of it lie beyond."""
+
 _MIN_SMOOTH_REACH = 36
 """How many pixels of the small size other weights must reach: the error is then below 1e-3 of what a pixel becomes."""
 
@@ -126,11 +129,11 @@ def find_spans(axis: BlurAxis, length: int, edge: Edge) -> tuple[list[tuple[int,
 
 
 def gaussian_weights(sigma: float) -> tuple[float, ...]:
-    """Normalized weights out to 4 sigma, as scipy's gaussian_filter has them.
+    """Normalized weights, those of scipy's gaussian_filter from one pixel on.
 
     Below one pixel the Gaussian is integrated over each pixel: samples of it would be too narrow.
     """
-    radius = int(4.0 * sigma + 0.5) if sigma >= 1.0 else math.ceil(4.0 * sigma)
+    radius = int(_REACH * sigma + 0.5) if sigma >= 1.0 else math.ceil(_REACH * sigma)
     if sigma < 1.0:
         half = sigma * math.sqrt(2.0)
         weights = [math.erf((i + 0.5) / half) - math.erf((i - 0.5) / half) for i in range(-radius, radius + 1)]
@@ -142,7 +145,7 @@ def gaussian_weights(sigma: float) -> tuple[float, ...]:
 def decimation_weights(step: int) -> tuple[tuple[float, ...], int]:
     """Weights of a decimation by `step`, and where they start relative to the first pixel of each block."""
     sigma, middle = _DECIMATION_SIGMA * step, (step - 1) / 2
-    reach = math.ceil(4.0 * sigma - middle)
+    reach = math.ceil(_REACH * sigma - middle)
     weights = [math.exp(-0.5 * ((i - middle) / sigma) ** 2) for i in range(-reach, step + reach)]
     return _normalize(weights), -reach
 

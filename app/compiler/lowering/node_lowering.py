@@ -36,6 +36,7 @@ from .expand import FlatGraph, find_stand_in
 from .graph_at_frames import GraphAtFrames
 from .node_inputs import DrawnPicture, NodeInputs, find_cameras, takes_field
 from .pictures import PictureBuilder
+from .pixel_shapes import follow_pixel_aspect
 from .steps import LoweringStep, StepKey, field_port
 
 OperandFinder = Callable[[Port, int, bool], Operand | None]
@@ -119,6 +120,7 @@ class NodeLowering:
         units where units are stated. Graphs that state none are asked as ever, with the values in the file. A mask
         mixes with the input as it is before the node works on it, so that input is remembered first.
         """
+        inputs = follow_pixel_aspect(self._builder, inputs)
         node, path = inputs.node, inputs.path
         size = self._find_size(inputs)
         step.whole_height = self._find_whole_height(inputs, size)

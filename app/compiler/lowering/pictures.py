@@ -99,7 +99,9 @@ class PictureBuilder:
         # kept for later do not keep it in memory.
         window = Region(*probed.overscan) if self._overscan and probed.overscan else None
         picture = replace(picture, pixels=None, by_rows=probed.by_rows, overscan=window is not None)
-        ref = self._builder.add(Read((shape,), owner, picture, probed.fingerprint, probed.half, window))
+        ref = self._builder.add(
+            Read((shape,), owner, picture, probed.fingerprint, probed.half, window, probed.pixel_aspect)
+        )
         return self.fit(ref, size, owner)
 
     def read_asset(self, picture: Picture, owner: str) -> Ref:

@@ -15,6 +15,7 @@ from ..areas import Region
 from ..codegen.emit import EmittedProgram, emit
 from ..fusion.fuse import PassGroup
 from ..ir import HostCall, LoweredProgram, Memory, Op, Read, Ref, SourceOp
+from ..ir.pixel_aspects import find_pixel_aspects
 from ..library import Library
 from ..plan import Depth, HostTask, Pass, Plan, Surface, Upload, texture_bytes, texture_format
 from ..target import Precision, Target
@@ -55,6 +56,7 @@ def schedule(
     first, last = _find_lifetimes(program, passes)
     slots, sizes = _assign_slots(program, needed, texels, first, last)
     numbers = {ref: number for number, ref in enumerate(needed)}
+    pixel_aspects = find_pixel_aspects(program.ops)
     surfaces = tuple(
         Surface(
             keys[ref],
@@ -68,6 +70,7 @@ def schedule(
             program.window(ref),
             program.shape(ref).data,
             program.shape(ref).size,
+            pixel_aspects.get(ref, 1.0),
         )
         for ref in needed
     )

@@ -72,10 +72,11 @@ def plan_tiling(
     if program.windows:
         raise DeviceError(f"{why}: choose a smaller region")
     if program.extents:
-        raise DeviceError(
-            f"{why}, and with overscan they cannot be made in parts: render smaller with --scale or --size, give more "
-            "with --memory, or set a smaller overscan in the settings of the graph"
-        )
+        largest = max(program.extents, key=lambda ref: _count_pixels(program.extents[ref].size))
+        owner, (width, height) = program.ops[largest.op].owner, program.extents[largest].size
+        made = f"{describe_owner(owner)} makes {width}x{height} pixels with those beyond the frame"
+        remedy = "render smaller with --scale or --size, give more with --memory, or set a smaller overscan"
+        raise DeviceError(f"{why}, and with overscan they cannot be made in parts: {made}; {remedy}", node=owner)
     for ref in texels:
         if _count_pixels(program.shape(ref).size) > MAX_PIXELS:
             raise DeviceError(
@@ -227,7 +228,7 @@ class _StagePlanner:
         return SMALL_FRACTION * _count_pixels(self.program.shape(ref).size) <= self.largest
 
     def _is_light(self, fused: PassGroup) -> bool:
-        """True for a pass whose pictures take little of the allowed memory, an eighth at most."""
+        """True for a pass whose pictures take an eighth of the allowed memory at most. Chosen by judgement."""
         nbytes = sum(_count_bytes(self.program, self.texels, ref) for ref in fused.writes)
         return not self.target.memory or 8 * nbytes <= self.target.memory
 

@@ -14,6 +14,15 @@ from ...glsl import unify_lines
 from ..code import CodeFault
 from .sizes import SizeError, SizeFormula, read_size
 
+_LARGEST_FLOAT = 3.4e38
+"""Just below the largest float of 32 bits (3.403e38)."""
+
+_LONGEST_NAME = 200
+"""Letters of a name. Chosen by judgement: names become those of GLSL, which get a prefix."""
+
+_SHOWN, _SHOWN_TEXT = 40, 60
+"""How many characters of a wrong entry, and of a wrong text, a message repeats."""
+
 MAX_INPUTS = 256
 MAX_PASSES = 64
 """Choices, so that a hostile head costs little."""
@@ -131,7 +140,9 @@ class _HeaderReader:
     def _read_input(self, raw: Section) -> IsfInput:
         name, kind = self._read_name(raw.get("NAME"), "an input"), raw.get("TYPE")
         if kind not in TYPES:
-            self._fail(f"the input '{name}' has the TYPE {json.dumps(kind)[:40]}: known are {', '.join(TYPES)}", name)
+            self._fail(
+                f"the input '{name}' has the TYPE {json.dumps(kind)[:_SHOWN]}: known are {', '.join(TYPES)}", name
+            )
         label = self._read_text(raw, "LABEL")
         if kind in PICTURES:
             return IsfInput(name, kind, label)
@@ -148,7 +159,9 @@ class _HeaderReader:
         numbers_by_label: dict[str, int] = {}
         for number, value in enumerate(values):
             if not _is_number(value) or value != int(value) or abs(value) >= 2**31:
-                self._fail(f"the VALUES of the input '{name}' are whole numbers, not {json.dumps(value)[:40]}", name)
+                self._fail(
+                    f"the VALUES of the input '{name}' are whole numbers, not {json.dumps(value)[:_SHOWN]}", name
+                )
             written_label = str(labels[number]).strip() if number < len(labels) else ""
             written_label = label = written_label or str(int(value))
             again = 1
@@ -168,7 +181,7 @@ class _HeaderReader:
             parts = [*parts, 1.0]
         if len(parts) != length or not all(_is_number(part) for part in parts):
             expected = "a number" if length == 1 else f"a list of {length} numbers"
-            self._fail(f"the {key} of the input '{name}' is {json.dumps(entry)[:40]}: it is {expected}", name)
+            self._fail(f"the {key} of the input '{name}' is {json.dumps(entry)[:_SHOWN]}: it is {expected}", name)
         return tuple(float(part) for part in parts)
 
     # --- passes ------------------------------------------------------------------------------------------------------
@@ -212,12 +225,12 @@ class _HeaderReader:
         if entry is None or entry == "":
             return None
         if not isinstance(entry, str) and not _is_number(entry):
-            fault = f"the {key} of '{name}' must be a formula such as \"$WIDTH/2.0\", not {json.dumps(entry)[:40]}"
+            fault = f"the {key} of '{name}' must be a formula such as \"$WIDTH/2.0\", not {json.dumps(entry)[:_SHOWN]}"
             self._fail(fault, name)
         try:
             return read_size(str(entry))
         except SizeError as fault:
-            self._fail(f"the {key} of '{name}', '{str(entry)[:60]}', cannot be read: {fault}", name)
+            self._fail(f"the {key} of '{name}', '{str(entry)[:_SHOWN_TEXT]}', cannot be read: {fault}", name)
 
     def _read_imported(self) -> dict[str, str]:
         section = self.raw.get("IMPORTED") or {}
@@ -236,7 +249,7 @@ class _HeaderReader:
             parts = PurePosixPath(path).parts
             if not parts or "\\" in path or ":" in path or path.startswith("/") or ".." in parts or "\0" in path:
                 self._fail(
-                    f"the imported picture '{name}' has the PATH '{path[:60]}': name a file in the "
+                    f"the imported picture '{name}' has the PATH '{path[:_SHOWN_TEXT]}': name a file in the "
                     "folder of the shader or in one below",
                     name,
                 )
@@ -254,7 +267,7 @@ class _HeaderReader:
 
     def _read_section(self, item: Any, key: str) -> Section:
         if not isinstance(item, dict):
-            self._fail(f"{key} holds {json.dumps(item)[:40]}, which is not a JSON object", key)
+            self._fail(f"{key} holds {json.dumps(item)[:_SHOWN]}, which is not a JSON object", key)
         return cast(Section, item)
 
     def _read_list(self, raw: Section, key: str) -> list[Any]:
@@ -270,9 +283,9 @@ class _HeaderReader:
         return entry.strip() if isinstance(entry, str) else ""
 
     def _read_name(self, name: Any, owner: str) -> str:
-        if not isinstance(name, str) or not _NAME.fullmatch(name) or len(name) > 200:
+        if not isinstance(name, str) or not _NAME.fullmatch(name) or len(name) > _LONGEST_NAME:
             self._fail(
-                f"{owner} has the name {json.dumps(name)[:60]}: use letters, digits and _, as GLSL does",
+                f"{owner} has the name {json.dumps(name)[:_SHOWN_TEXT]}: use letters, digits and _, as GLSL does",
                 name if isinstance(name, str) else "",
             )
         if _RESERVED_NAMES.fullmatch(name):
@@ -281,7 +294,7 @@ class _HeaderReader:
 
 
 def _is_number(item: Any) -> bool:
-    return isinstance(item, int | float) and abs(item) < 3.4e38 and math.isfinite(item)
+    return isinstance(item, int | float) and abs(item) < _LARGEST_FLOAT and math.isfinite(item)
 
 
 def _is_set(raw: Section, key: str) -> bool:

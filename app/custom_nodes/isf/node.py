@@ -27,10 +27,14 @@ from .inputs import (
 )
 from .sizes import SizeError
 
+_DAY = 86400.0
+"""Seconds of a day, in which DATE counts."""
+
 MAX_ISF_CLASSES = 512
+"""Classes that are kept, the newest: each version of a text that is being edited makes one. Chosen by judgement."""
 _BYTES = (0.0, 1.0)
 _FLOATS = (-3.4e38, 3.4e38)
-"""What buffers hold."""
+"""What buffers hold: bytes as fractions, and floats just below the largest (3.403e38)."""
 
 _LIGHTS = ("display", "linear")
 _LIGHT = Value(
@@ -183,7 +187,7 @@ class _ShaderDrawing:
             "TIME": frame / rate,
             "TIMEDELTA": 1.0 / rate if frame else 0.0,
             "FRAMEINDEX": frame,
-            "DATE": (2000.0, 1.0, 1.0, (frame / rate) % 86400.0),
+            "DATE": (2000.0, 1.0, 1.0, (frame / rate) % _DAY),
         }
         return {name: uniforms[name] for name in self.shader.builtin}
 

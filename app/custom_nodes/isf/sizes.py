@@ -13,6 +13,9 @@ MAX_LENGTH = 1000
 MAX_DEPTH = 50
 """Letters and nested brackets of a formula: far more than sizes need. A choice, so that reading never runs deep."""
 
+_ROUNDING = 1e-9
+"""How far, as a part of it, a length may be from a whole number that it means: formulas are calculated in doubles."""
+
 SizeEvaluator = Callable[[Mapping[str, float]], float]
 
 _TOKENS = re.compile(r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)|(?P<name>\$?[A-Za-z_]\w*)|(?P<sign>.))")
@@ -73,7 +76,7 @@ class SizeFormula:
             raise SizeError("it is not finite")
         # A length that is an integer except for rounding errors is meant to be one.
         whole = round(length)
-        return max(1, whole if abs(length - whole) <= 1e-9 * max(1.0, abs(length)) else math.floor(length))
+        return max(1, whole if abs(length - whole) <= _ROUNDING * max(1.0, abs(length)) else math.floor(length))
 
 
 def read_size(text: str) -> SizeFormula:

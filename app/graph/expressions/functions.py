@@ -124,6 +124,7 @@ OPERATORS: Mapping[str, Callable[[float, float], float]] = MappingProxyType(
 """Arithmetic. The rest of a division, %, has the sign of the divisor, as mod() of GLSL."""
 
 _VARIADIC = range(2, 501)
+"""How many arguments min and max take. Chosen by judgement: far more than anybody writes."""
 
 FUNCTIONS: Mapping[str, ExpressionFunction] = MappingProxyType(
     {

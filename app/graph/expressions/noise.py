@@ -6,6 +6,7 @@ import math
 
 _BITS = (1 << 64) - 1
 _GOLDEN = 0x9E3779B97F4A7C15
+"""64 bits, and the odd number next to 2^64 divided by the golden ratio, by which SplitMix64 counts."""
 
 
 def hash_numbers(number: int, seed: int = 0) -> int:
@@ -14,7 +15,10 @@ def hash_numbers(number: int, seed: int = 0) -> int:
 
 
 def random(number: float, seed: float = 0.0) -> float:
-    """A random number from 0 to below 1 for each integer; the fraction of `number` is ignored."""
+    """A random number from 0 to below 1 for each integer; the fraction of `number` is ignored.
+
+    It has 53 bits, as many as a double.
+    """
     return (hash_numbers(math.floor(number), math.floor(seed)) >> 11) / (1 << 53)
 
 
@@ -27,7 +31,7 @@ def noise(x: float, seed: float = 0.0) -> float:
 
 
 def mix_bits(bits: int) -> int:
-    """The finalizer of SplitMix64: every bit of the result depends on every bit of the argument."""
+    """The finalizer of SplitMix64, with its constants: every bit of the result depends on every bit of the argument."""
     bits &= _BITS
     bits = ((bits ^ (bits >> 30)) * 0xBF58476D1CE4E5B9) & _BITS
     bits = ((bits ^ (bits >> 27)) * 0x94D049BB133111EB) & _BITS

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import ntpath
 from collections.abc import Iterator
-from pathlib import PurePosixPath, PureWindowsPath
 
 from halation.nodes import Node
 
@@ -55,7 +55,7 @@ def list_paths(graph: Graph) -> Iterator[tuple[str, str, str, str]]:
 
 def is_absolute(path: str) -> bool:
     """True for a path that begins at a root or a drive, on any system."""
-    return PurePosixPath(path).is_absolute() or bool(PureWindowsPath(path).drive)
+    return path.startswith("/") or bool(ntpath.splitdrive(path)[0])
 
 
 def absolute_path(sheet: GraphFacts) -> Iterator[Problem]:

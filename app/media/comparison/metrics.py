@@ -19,6 +19,7 @@ _SIGMA = 1.5
 _K1, _K2 = 0.01, 0.03
 """Size and sigma of the window, and the constants of SSIM (Wang, Bovik, Sheikh and Simoncelli 2004)."""
 _BROKEN_COLOR = (1.0, 0.0, 1.0)
+"""Magenta for NaN and infinity, which no heat map has."""
 
 
 @dataclass(frozen=True)

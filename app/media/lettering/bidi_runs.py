@@ -101,7 +101,7 @@ def _find_scripts(paragraph: str) -> list[str]:
     return [script or first for script in scripts]
 
 
-@lru_cache(maxsize=4096)
+@lru_cache(maxsize=4096)  # chosen by judgement: the letters of a few scripts
 def _find_script(letter: str) -> str:
     """The script of a letter; "" for marks, signs and spaces that all scripts share."""
     if category(letter)[0] == "Z":

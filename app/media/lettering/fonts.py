@@ -26,6 +26,15 @@ DEFAULT_FAMILY = "DejaVu Sans"
 _MOST_BYTES = 200_000_000
 """The largest font file. The largest that are in use hold Chinese, Japanese and Korean in all weights: 120 MB."""
 
+_REGULAR, _BOLD = 400.0, 700.0
+"""The weights of the regular and the bold faces (CSS Fonts 4); a font that names none is regular."""
+
+_BOLD_FROM = (_REGULAR + _BOLD) / 2.0
+"""The weight from which the bold file is nearer than the regular one."""
+
+_SAME_WEIGHT = 50.0
+"""Half of the step of 100 between named weights: a font that is nearer than that has the weight."""
+
 _BOLD_STEP = 0.04 / 300.0
 """How much thicker strokes become for each unit of weight, in em: 0.04 from regular to bold, of the 0.01 to 0.05 that
 HarfBuzz calls typical."""
@@ -50,14 +59,14 @@ def load_font(typeface: Typeface, sandbox: Sandbox) -> LoadedFont:
         path = typeface.path
     elif family in PACKED:
         files = PACKED[family]
-        file = FONTS / files[-1 if typeface.weight > 550.0 else 0]
+        file = FONTS / files[-1 if typeface.weight > _BOLD_FROM else 0]
         return _load(str(file), f"{file.name} 2.37", typeface.weight, None)
     else:
         path = _find_family(family, typeface, sandbox)
     return _load(path, fingerprint(path, sandbox), typeface.weight, sandbox)
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=32)  # chosen by judgement: more fonts than a graph has, a few MB each
 def _load(path: str, mark: str, weight: float, sandbox: Sandbox | None) -> LoadedFont:
     """Open a font. HarfBuzz checks all tables before it uses them."""
     if sandbox is None:
@@ -74,8 +83,8 @@ def _load(path: str, mark: str, weight: float, sandbox: Sandbox | None) -> Loade
     if any(axis.tag == "wght" for axis in face.axis_infos):
         font.set_variations({"wght": weight})
     else:
-        own = font.get_style_value(hb.StyleTag.WEIGHT) or 400.0
-        if (sandbox is None and own == weight) or abs(weight - own) < 50.0:
+        own = font.get_style_value(hb.StyleTag.WEIGHT) or _REGULAR
+        if (sandbox is None and own == weight) or abs(weight - own) < _SAME_WEIGHT:
             own = weight
         if weight != own:
             font.synthetic_bold = (weight - own) * _BOLD_STEP

@@ -55,7 +55,7 @@ def find_missing(paragraph: str, glyphs: list[ShapedGlyph]) -> list[str]:
     return [letter for letter in letters if category(letter) not in _IGNORED]
 
 
-@lru_cache(maxsize=4096)
+@lru_cache(maxsize=4096)  # chosen by judgement: the letters of a few fonts, a few KB each
 def trace_glyph(font: LoadedFont, glyph: int) -> tuple[Contour, ...]:
     """The outlines of a glyph in em, y down, as cubic curves; straight lines are curves too."""
     tracer = _GlyphTracer(1.0 / font.upem)

@@ -11,6 +11,18 @@ import numpy as np
 Array = np.ndarray
 Color = tuple[float, float, float]
 
+ROUGH = 0.6
+"""Roughness of a material that names none: a broad highlight. glTF's own default is 1. Chosen by judgement."""
+
+_TANGENT_STEP = 1e-6
+"""Step of the differences that give tangents. The rounding of doubles, 2e-16, leaves ten digits of it, and what bends
+within it is as small."""
+
+_SEGMENTS = 96
+"""Sides of round shapes: their outline is off by 5e-4 of the radius (1 - cos(pi / 96)), a pixel for 2000 pixels."""
+
+# All other numbers in this file are the places, sizes and materials of the sample scenes, chosen by eye.
+
 
 @dataclass(frozen=True, eq=False)
 class MeshPart:
@@ -45,7 +57,7 @@ class MeshPart:
         *,
         emission: Color = (0.0, 0.0, 0.0),
         metal: float = 0.0,
-        rough: float = 0.6,
+        rough: float = ROUGH,
         moving: bool = False,
     ) -> MeshPart:
         """The same shape with another material."""
@@ -55,7 +67,7 @@ class MeshPart:
 def make_surface(points: Callable[[Array, Array], Array], across: int, down: int) -> MeshPart:
     """A smooth surface over the unit square, from a function of u and v in 0..1; normals come from its tangents."""
     v, u = (grid.ravel() for grid in np.mgrid[0 : 1 : (down + 1) * 1j, 0 : 1 : (across + 1) * 1j])
-    places, step = points(u, v), 1e-6
+    places, step = points(u, v), _TANGENT_STEP
     normals = np.cross(points(u + step, v) - points(u - step, v), points(u, v + step) - points(u, v - step))
     length = np.linalg.norm(normals, axis=1, keepdims=True)
     normals = np.divide(normals, length, out=np.zeros_like(normals), where=length > 0.0)
@@ -72,7 +84,7 @@ def make_surface(points: Callable[[Array, Array], Array], across: int, down: int
     )
 
 
-def make_sphere(radius: float, segments: int = 96) -> MeshPart:
+def make_sphere(radius: float, segments: int = _SEGMENTS) -> MeshPart:
     """A ball around the origin. Its normals point outward, at the poles too."""
 
     def points(u: Array, v: Array) -> Array:
@@ -83,7 +95,7 @@ def make_sphere(radius: float, segments: int = 96) -> MeshPart:
     return replace(ball, normals=ball.positions / radius)
 
 
-def make_torus(radius: float, thickness: float, segments: int = 96) -> MeshPart:
+def make_torus(radius: float, thickness: float, segments: int = _SEGMENTS) -> MeshPart:
     """A ring around the y axis, so it stands upright."""
 
     def points(u: Array, v: Array) -> Array:

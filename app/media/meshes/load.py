@@ -17,9 +17,11 @@ from ...resources.input_files import fingerprint, open_file, read_bytes
 from ...resources.library_names import is_utf8
 from ...resources.mesh import ATTRIBUTES, Mesh
 from ...resources.sandbox import Sandbox
-from .built_in import BUILT_IN, MeshPart
+from .built_in import BUILT_IN, ROUGH, MeshPart
 
 Array = np.ndarray
+_GRAY = 204, 204, 204
+"""sRGB codes of a mesh without a color: it reflects 60 % of the light. Chosen by judgement."""
 MESH_ENDINGS = frozenset({".glb", ".gltf", ".obj", ".ply", ".stl"})
 
 _COLUMNS = sum(ATTRIBUTES.values())
@@ -41,7 +43,7 @@ def load_mesh(scene: Scene, sandbox: Sandbox) -> Mesh:
     )
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=8)  # chosen by judgement: more scenes than a graph has; one may take hundreds of MB
 def _load(scene: Scene, mark: str, sandbox: Sandbox) -> Mesh:
     if isinstance(scene, BuiltInScene):
         return _join_parts(BUILT_IN[scene.name]())
@@ -136,7 +138,7 @@ def _read_part(scene: Any, node: str) -> MeshPart | None:
         albedo=_base_color(visual, material),
         emission=_color_factor(material, "emissiveFactor", (0.0, 0.0, 0.0)),
         metal=_number_factor(material, "metallicFactor", 0.0),
-        rough=_number_factor(material, "roughnessFactor", 0.6),
+        rough=_number_factor(material, "roughnessFactor", ROUGH),
         is_moving=True,
     )
 
@@ -170,7 +172,7 @@ def _base_color(visual: Any, material: Any) -> tuple[float, float, float]:
         linear = to_float(np.asarray(base)[:3])
     else:
         base = getattr(material or visual, "main_color", None)
-        linear = decode_srgb(to_float(np.asarray((204, 204, 204) if base is None else base, np.uint8)[:3]))
+        linear = decode_srgb(to_float(np.asarray(_GRAY if base is None else base, np.uint8)[:3]))
     red, green, blue = (float(part) for part in linear)
     return red, green, blue
 

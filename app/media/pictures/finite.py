@@ -10,6 +10,7 @@ import OpenImageIO as oiio
 
 Array = np.ndarray
 HALF_MAX = 65504.0
+"""The largest finite half float (IEEE 754)."""
 _INFINITE = 0x7C00
 """The exponent of half floats that are not finite."""
 _SMALLER = np.float32(1.0 / 16.0)

@@ -33,6 +33,10 @@ _DTYPES = {
     "int16": "int16",
     "int": "int32",
 }
+MAX_PIXEL_ASPECT = 16.0
+"""The largest pixel aspect ratio that is believed, and the inverse of the least: that of anamorphic film is 2, of the
+video formats at most 2.13. OpenEXR allows a million. Chosen by judgement: a viewer could show nothing beyond."""
+
 _BY_ROWS = ("openexr", "tiff")
 """Formats that can be decoded from any row."""
 
@@ -73,7 +77,7 @@ def open_picture(path: str | Path, sandbox: Sandbox) -> Iterator[oiio.ImageInput
 
 def describe_picture(picture: oiio.ImageInput, path: str, sandbox: Sandbox) -> ImageInfo:
     """The header of an open file. Parts of another size (previews, pages) are left out. Raises InputError."""
-    size = _upright_size(picture.spec())
+    size, pixel_aspect = _upright_size(picture.spec()), read_pixel_aspect(picture.spec())
     check_size(path, size)
     parts: list[ChannelPart] = []
     windows: list[PixelRectangle] = []
@@ -98,7 +102,16 @@ def describe_picture(picture: oiio.ImageInput, path: str, sandbox: Sandbox) -> I
         format,
         is_whole and format in _BY_ROWS,
         find_overscan(size, windows),
+        pixel_aspect,
     )
+
+
+def read_pixel_aspect(spec: oiio.ImageSpec) -> float:
+    """The width of a pixel over its height, as the picture is shown upright; 1 for numbers that cannot be meant."""
+    aspect = spec.get_float_attribute("PixelAspectRatio", 1.0)
+    if not 1.0 / MAX_PIXEL_ASPECT <= aspect <= MAX_PIXEL_ASPECT:
+        return 1.0
+    return 1.0 / aspect if read_orientation(spec) > 4 else aspect
 
 
 def read_orientation(spec: oiio.ImageSpec) -> int:
@@ -158,8 +171,8 @@ def find_overscan(size: Size, windows: Sequence[PixelRectangle]) -> PixelRectang
         max(side, *(min(window[axis] + window[axis + 2], side + margin) for window in windows))
         for axis, side in enumerate(size)
     )
-    found = (left, top, right - left, bottom - top)
-    return None if found == (0, 0, width, height) else found
+    overscanned = (left, top, right - left, bottom - top)
+    return None if overscanned == (0, 0, width, height) else overscanned
 
 
 def _is_whole(spec: oiio.ImageSpec) -> bool:

@@ -117,7 +117,7 @@ def copy_picture(path: Path, source: Path, sandbox: Sandbox) -> None:
     def copy(name: str) -> None:
         shutil.copyfile(source, name)
 
-    if reason := sandbox.fault(path):
+    if reason := sandbox.find_write_fault(path):
         raise OutputError(f"{path}: {reason}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -138,8 +138,9 @@ def encode_for_viewing(part: StoredPart, view: str = "", span: tuple[float, floa
 
 
 def encode_png(codes: Array) -> bytes:
-    """[h, w, 3] of uint8, or of numbers within 0..1, as the bytes of a PNG file."""
+    """[h, w, 3 or 4] of uint8, or of numbers within 0..1, as the bytes of a PNG file; a fourth channel is unchanged."""
     buffer = oiio.ImageBuf(np.ascontiguousarray(codes if codes.dtype == np.uint8 else _to_codes(codes)))
+    buffer.specmod().attribute("oiio:UnassociatedAlpha", 1)
     with tempfile.TemporaryDirectory(prefix="halation-") as folder:
         path = Path(folder) / "picture.png"
         if not buffer.write(str(path), oiio.UINT8):

@@ -14,6 +14,9 @@ from ...resources.input_files import check_file
 from ...resources.sandbox import Sandbox
 
 _LARGEST = 65535
+"""The largest code of 16 bits."""
+_OVERHEAD = 4096
+"""Bytes that a PNG may take beyond its pixels, for the check of free space."""
 
 
 def write_table_strip(path: str | Path, colors: Array, sandbox: Sandbox) -> None:
@@ -30,7 +33,7 @@ def write_table_strip(path: str | Path, colors: Array, sandbox: Sandbox) -> None
         if not buffer.set_pixels(oiio.ROI(), codes) or not buffer.write(name, "uint16", "png"):
             raise OutputError(f"{path}: the picture cannot be written: {buffer.geterror()}")
 
-    write_atomically(path, encode, codes.nbytes + 4096, sandbox)
+    write_atomically(path, encode, codes.nbytes + _OVERHEAD, sandbox)
 
 
 def read_table_strip(path: str | Path, sandbox: Sandbox) -> Array:

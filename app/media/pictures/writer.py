@@ -155,7 +155,7 @@ def _check_layers(
     encoding.check_names()
     choices = _COMPRESSIONS.get(format, (compression,))
     if compression not in choices:
-        close_names = difflib.get_close_matches(compression.casefold(), choices, 1, 0.4)
+        close_names = difflib.get_close_matches(compression.casefold(), choices, 1, _SIMILAR)
         hint = f"did you mean '{close_names[0]}'? Choose" if close_names else "choose"
         raise UsageError(f"{path}: there is no compression '{compression}': {hint} from {', '.join(choices)}")
     if format != "openexr":
@@ -166,6 +166,11 @@ def _check_layers(
             f"{path}: one EXR holds layers of one size, but there are {sizes_text}: write them to several files"
         )
     return format
+
+
+_SIMILAR = 0.4
+"""How similar a suggested name is at least. Chosen by judgement: below difflib's 0.6, as one letter counts much in
+short names."""
 
 
 def _choose_format(path: Path) -> str:

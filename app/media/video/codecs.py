@@ -89,7 +89,9 @@ def find_codec(path: str | Path, name: str, size: Size | None = None) -> VideoCo
         raise UsageError(f"{path}: videos are written as {', '.join(WRITABLE)}: choose one of these endings")
     chosen = name or codecs[0]
     if chosen not in codecs:
-        close_names = difflib.get_close_matches(chosen.casefold(), codecs, 1, 0.5)
+        close_names = difflib.get_close_matches(
+            chosen.casefold(), codecs, 1, 0.5
+        )  # chosen by judgement: below difflib's 0.6, as one letter counts much in a short name
         homes = [ending for ending, codec_names in _CODECS_BY_ENDING.items() if chosen in codec_names]
         hint = f"did you mean '{close_names[0]}'? Choose" if close_names else "choose"
         rest = f", or write to {' or '.join(homes)}" if homes else ""

@@ -145,7 +145,7 @@ def describe_video_fault(error: Exception) -> str:
     return f"cannot be read as a video ({message})"
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=64)  # chosen by judgement: the videos of a few graphs; looking through one takes long
 def survey_video(path: str, mark: str, sandbox: Sandbox) -> tuple[VideoInfo, FrameIndex]:
     """Look through a video; the same version of a file, which `mark` tells, is looked through once.
 

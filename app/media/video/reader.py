@@ -166,6 +166,6 @@ def _frame_bytes(frame: Any) -> int:
     return sum(plane.buffer_size for plane in frame.planes)
 
 
-@lru_cache(maxsize=6)
+@lru_cache(maxsize=6)  # chosen by judgement: an open video has a decoder and the frames of a group
 def _open_reader(path: str, mark: str, sandbox: Sandbox) -> VideoReader:
     return VideoReader(path, mark, sandbox=sandbox)

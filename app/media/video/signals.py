@@ -63,7 +63,7 @@ def choose_matrix(number: int, size: tuple[int, int]) -> int:
 
 
 def code_ranges(bits: int, limited: bool) -> tuple[float, float, float, float]:
-    """Black and the span to white for luma, and the same for color differences: their center and span."""
+    """Black and the span to white for luma, and the same for color differences: their center and span (BT.709)."""
     step = float(1 << (bits - 8)) if bits > 8 else 1.0
     if limited:
         return 16.0 * step, 219.0 * step, 128.0 * step, 224.0 * step
@@ -137,14 +137,14 @@ def decode_transfer(encoded: Array, transfer: int) -> Array:
 
 
 def _decode_pq(signal: Array) -> Array:
-    """cd/m2 (SMPTE ST 2084)."""
+    """cd/m2 (SMPTE ST 2084, whose constants these are)."""
     m1, m2, c1, c2, c3 = 2610 / 16384, 2523 / 32, 3424 / 4096, 2413 / 128, 2392 / 128
     root = np.clip(signal, 0.0, 1.0).astype(np.float64) ** (1.0 / m2)
     return 10000.0 * (np.maximum(root - c1, 0.0) / (c2 - c3 * root)) ** (1.0 / m1)
 
 
 def _decode_hlg(signal: Array) -> Array:
-    """Scene light, 0..1 (BT.2100)."""
+    """Scene light, 0..1 (BT.2100, table 5, whose constants these are)."""
     a, b, c = 0.17883277, 0.28466892, 0.55991073
     return np.where(signal <= 0.5, signal**2 / 3.0, (np.exp((signal - c) / a) + b) / 12.0)
 

@@ -39,6 +39,11 @@ _TAGS = MappingProxyType(
 """Display color spaces -> primaries and transfer characteristics by the numbers of ITU-T H.273."""
 
 _NTSC = 1001
+"""NTSC rates are whole ones times 1000 / 1001, by definition."""
+_RATE_ROUNDING = 0.005
+"""How far a rate may be from an NTSC one: they are written with two or three decimals, 29.97 or 23.976."""
+_MAX_DENOMINATOR = 100_000
+"""Rates keep five decimals: the error is below a frame in an hour."""
 _DITHERED_BITS = 10
 """The most bits that are dithered: with more, no eye sees steps."""
 
@@ -203,9 +208,9 @@ def to_exact_rate(rate: float | Fraction) -> Fraction:
     if isinstance(rate, Fraction):
         return rate
     whole = round(rate * _NTSC / 1000)
-    if rate != round(rate) and abs(rate * _NTSC / 1000 - whole) < 0.005:
+    if rate != round(rate) and abs(rate * _NTSC / 1000 - whole) < _RATE_ROUNDING:
         return Fraction(whole * 1000, _NTSC)
-    return Fraction(rate).limit_denominator(100_000)
+    return Fraction(rate).limit_denominator(_MAX_DENOMINATOR)
 
 
 def _rgb_planes(codes: Array, format: str) -> list[Array]:
@@ -241,7 +246,11 @@ def _chroma_planes(codes: Array, matrix: int, format: str, bits: int, noise_fram
 
 
 def _halve_chroma(plane: Array, across: bool, down: bool) -> Array:
-    """Chroma at half the size: horizontally at the left luma samples, vertically between rows."""
+    """Chroma at half the size: horizontally at the left luma samples, vertically between rows (as H.264 has it
+    without other signs).
+
+    The weights are those of a triangle over three samples, and of a box over two rows.
+    """
     if across:
         wide = np.pad(plane, ((0, 0), (1, 2)), mode="edge")
         count = (plane.shape[1] + 1) // 2 * 2

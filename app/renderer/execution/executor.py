@@ -44,6 +44,9 @@ of 1920x1080 is still one piece."""
 FIRST_SHARE = 256
 """The first band of code has this part of the rows: a pass of ten seconds then holds up others for 0.04 s at first."""
 
+_LEAST_ELAPSED = 1e-6
+"""Seconds that a band counts as at least: clocks may show 0."""
+
 MAX_GROWTH = 8
 """How many times as high as the last band a band may be: code that is quick is done in four bands."""
 
@@ -288,7 +291,7 @@ class Executor:
             if row < total:
                 yield
             if is_limited:
-                height = max(1, min(int(height * seconds / max(elapsed, 1e-6)), MAX_GROWTH * height))
+                height = max(1, min(int(height * seconds / max(elapsed, _LEAST_ELAPSED)), MAX_GROWTH * height))
         if is_compute and self.device.target.software:  # which returns when it is done
             self._costs.record_time(plan, render_pass, spent)
 

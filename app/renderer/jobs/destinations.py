@@ -86,7 +86,7 @@ def plan_destinations(
 def create_folders(files_by_frame: Mapping[int, Sequence[Destination]], sandbox: Sandbox) -> None:
     """Create the folders of files that are not there. Raises OutputError."""
     for folder in {file.path.parent for files in files_by_frame.values() for file in files}:
-        if reason := sandbox.fault(folder):
+        if reason := sandbox.find_write_fault(folder):
             raise OutputError(f"{folder}: {reason}")
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -158,7 +158,7 @@ def check_destinations(
         if node := readers.get(os.path.realpath(file.path)):
             raise UsageError(f"{file.path}: this file is read by '{node.removeprefix('inputs.')}'; write to another")
         surfaces = {layer: plan.surfaces[plan.outputs[name]] for layer, name in file.layers.items()}
-        sizes = {layer: surface.frame or surface.size for layer, surface in surfaces.items()}
+        sizes = {layer: surface.frame_size for layer, surface in surfaces.items()}
         if is_video(str(file.path)):
             media.check_video(
                 file.path, file.kinds, sizes, codec=settings.codec, encoding=file.encoding, sandbox=sandbox

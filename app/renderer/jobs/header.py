@@ -50,6 +50,8 @@ def make_header(
     for path in dict.fromkeys(item.path for item in sources if item.is_picture):
         metadata = media.read_metadata(path, sandbox=hashes.sandbox) | metadata
     metadata = {name: item for name, item in metadata.items() if not name.startswith(PREFIX)}
+    first = plan.surfaces[plan.outputs[next(iter(file.layers.values()))]]
+    metadata = media.set_pixel_aspect(metadata, first.pixel_aspect)
     metadata["halation:graph"] = graph
     metadata["halation:version"] = VERSION
     metadata["halation:renderer"] = target.renderer
@@ -156,8 +158,8 @@ def compute_content_keys(
             surface.texel,
             surface.size,
         )
-    made = {*keys, *(number for render_pass in plan.passes for number in render_pass.targets)}
-    keys |= {number: find_history_key(item) for number, item in enumerate(plan.surfaces) if number not in made}
+    known = {*keys, *(number for render_pass in plan.passes for number in render_pass.targets)}
+    keys |= {number: find_history_key(item) for number, item in enumerate(plan.surfaces) if number not in known}
     for render_pass in plan.passes:
         pass_key = hash_parts(*_describe_pass(render_pass), [keys[number] for number in render_pass.textures])
         for place, number in enumerate(render_pass.targets):

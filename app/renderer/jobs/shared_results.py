@@ -57,7 +57,8 @@ class SharedResults:
     """The results in a folder. `hash_file` gives the hash of the content of a file."""
 
     def __init__(self, folder: Path, hash_file: Callable[[str], str], sandbox: Sandbox) -> None:
-        sandbox.check(folder)
+        if fault := sandbox.find_write_fault(folder):
+            raise OutputError(f"{folder}: {fault}")
         if not folder.is_dir():
             for abandoned in list_abandoned_folders(folder.parent):
                 remove_shared_folder(abandoned)

@@ -23,7 +23,11 @@ from .destinations import OutputSettings
 from .job import run_job
 
 LABEL_SIZE = 16
+"""Pixels of the letters under a cell: chosen by eye, legible at 1:1."""
 MAX_CELLS = 400
+"""More pictures are refused before the first is rendered: a mistyped range is likelier. Chosen by judgement."""
+_CONSTANT_SIDE = 64
+"""Pixels of the side by which a picture of one pixel, a constant, is shown: any square will do."""
 FRAME = "frame"
 _SHEET_ASPECT = 1.7
 """Width over height of a sheet whose cells wrap: close to a screen of 16:9, with some room for labels."""
@@ -181,7 +185,7 @@ def _show_cells(graph: Graph, pictures: Sequence[Array], sweep: SweepRequest) ->
 
 def _widen(array: Array) -> Array:
     """A single value as a picture of that value."""
-    return np.tile(array, (64, 64, 1)) if array.shape[:2] == (1, 1) else array
+    return np.tile(array, (_CONSTANT_SIDE, _CONSTANT_SIDE, 1)) if array.shape[:2] == (1, 1) else array
 
 
 def _choose_columns(count: int, first: Array) -> int:

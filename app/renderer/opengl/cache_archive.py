@@ -12,11 +12,12 @@ import re
 import stat
 from hashlib import blake2b
 from pathlib import Path
-from zipfile import BadZipFile, ZipFile, ZipInfo
+from zipfile import ZipFile, ZipInfo
 
 from msgspec import Struct
 
 from ...errors import InputError, UsageError
+from ...resources.archives import DAMAGED_ARCHIVE
 from ...resources.atomic_write import replace_file, write_bytes_atomically
 from ...resources.input_files import open_file
 from ...resources.machine import describe_processor
@@ -28,6 +29,9 @@ HEADER = "halation-cache.json"
 MAX_BYTES = 2**30
 """What an archive may hold: as much as Mesa keeps by default (MESA_SHADER_CACHE_MAX_SIZE)."""
 MAX_FILES = 2**17
+"""Twice the programs of a full record (`MAX_RECORD_BYTES`)."""
+_MAX_HEADER = 2**16
+"""Bytes of the header, which has three short texts: about 200."""
 
 _FILE = r"[0-9a-f]{2}/[0-9a-f]{38}|halation-[0-9a-f]{16}|(?:part\d{1,3}/)?mesa_cache\.(?:db|idx)"
 _MEMBER = re.compile(rf"(?:{'|'.join(FOLDERS)})/(?:{_FILE})", re.ASCII)
@@ -82,7 +86,7 @@ def import_cache(path: Path, device: Device, *, sandbox: Sandbox) -> int:
         try:
             with ZipFile(file) as archive:
                 return _import_members(path, archive, base, CacheOwner.of_device(device))
-        except (BadZipFile, EOFError, NotImplementedError, RuntimeError) as error:  # damaged, unknown, encrypted
+        except DAMAGED_ARCHIVE as error:
             raise InputError(f"{path}: is damaged, or no archive of a cache: {error}") from error
 
 
@@ -120,7 +124,7 @@ def _write_member(archive: ZipFile, member: ZipInfo, base: Path) -> bool:
 
 def _read_owner(path: Path, archive: ZipFile) -> CacheOwner:
     try:
-        if archive.getinfo(HEADER).file_size > 2**16:
+        if archive.getinfo(HEADER).file_size > _MAX_HEADER:
             raise ValueError
         fields = json.loads(archive.read(HEADER))
         return CacheOwner(str(fields["renderer"]), str(fields["driver"]), str(fields["processor"]))

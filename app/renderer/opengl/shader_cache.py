@@ -20,6 +20,7 @@ FOLDERS = ("mesa_shader_cache_db", "mesa_shader_cache", "mesa_shader_cache_sf")
 DISABLING = ("MESA_SHADER_CACHE_DISABLE", "MESA_GLSL_CACHE_DISABLE")
 
 HASH_BYTES = 8
+"""Bytes of a program's hash: that two of 65,536 programs have the same has a probability of 1e-10."""
 MAX_RECORD_BYTES = 2**19
 """A record of 65,536 programs begins anew: Mesa, too, drops the oldest programs at some point. Chosen by judgement."""
 

@@ -12,6 +12,8 @@ from typing import Any
 
 EGL_LIBRARY = "libEGL.so.1"
 GL = "libGL.so.1"
+_MOST_DEVICES = 32
+"""Devices of EGL that are listed: far more than a machine has."""
 _DEVICE = 0x313F
 """EGL_PLATFORM_DEVICE_EXT."""
 
@@ -59,7 +61,11 @@ def _load() -> None:
     display_of = _function(
         egl, b"eglGetPlatformDisplayEXT", ctypes.c_void_p, ctypes.c_uint, ctypes.c_void_p, ctypes.c_void_p
     )
-    place, devices, count = os.environ.get("GLCONTEXT_DEVICE_INDEX", "0"), (ctypes.c_void_p * 32)(), ctypes.c_int()
+    place, devices, count = (
+        os.environ.get("GLCONTEXT_DEVICE_INDEX", "0"),
+        (ctypes.c_void_p * _MOST_DEVICES)(),
+        ctypes.c_int(),
+    )
     if query is None or display_of is None or not place.isdecimal():
         return
     if query(len(devices), ctypes.byref(devices), ctypes.byref(count)) and int(place) < count.value:

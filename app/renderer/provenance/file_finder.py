@@ -197,7 +197,7 @@ def _exists(recorded: RecordedFile, path: str, sandbox: Sandbox) -> bool:
 
 def _may_be_read(path: str, sandbox: Sandbox) -> bool:
     """True for a file that is there, and not outside of the sandbox."""
-    return not sandbox.fault(path) and Path(path).is_file() and os.access(path, os.R_OK)
+    return not sandbox.find_read_fault(path) and Path(path).is_file() and os.access(path, os.R_OK)
 
 
 def describe_missing(located_files: Sequence[LocatedFile], path: Path) -> InputError | None:

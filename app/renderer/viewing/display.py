@@ -10,6 +10,12 @@ from ..device import Device, DeviceTexture, PixelRect, TextureDepth
 from .look import Channels, Look, Meaning, Size, find_origin, find_panel_point
 from .view_programs import ColorView, ViewProgram, ViewPrograms
 
+_LEAST_RANGE = 1e-6
+"""A range of one number is shown this wide, so that nothing is divided by 0."""
+
+_EVERYWHERE = -1e9, -1e9, 2e9, 2e9
+"""A region beyond all pictures: nothing is dimmed."""
+
 MAX_TEXEL_DENSITY = 0.8
 """Texels per pixel, along a side, up to which a view is computed per texel: at 0.8 there are 0.64 texels for each
 pixel. Chosen by judgement: the second pass must cost less than the pixels that the view is not computed for."""
@@ -18,7 +24,8 @@ pixel. Chosen by judgement: the second pass must cost less than the pixels that 
 class Drawable(Protocol):
     """A result that can be drawn. `key` changes whenever its pixels do; `full_size` is its size at scale 1.
 
-    It has `size` pixels as it is; the texture holds them all, or a part from pixel `start` on.
+    Its frame has `size` pixels as it is. The texture holds them all, a part from pixel `start` on, or also pixels
+    around the frame: then it starts below 0.
     """
 
     @property
@@ -161,7 +168,7 @@ def _set_placement(program: ViewProgram, name: str, unit: int, picture: Drawable
     program.set(name, unit)
     program.set(f"{name}_part", (*picture.start, *size))
     program.set(f"{name}_origin", find_origin(look, panel, full_size))
-    program.set(f"{name}_step", tuple(size[axis] / (full_size[axis] * look.zoom) for axis in (0, 1)))
+    program.set(f"{name}_step", tuple(size[axis] / (full_size[axis] * look.pixel_size[axis]) for axis in (0, 1)))
     program.set(f"{name}_channels", picture.channels)
 
 
@@ -169,9 +176,10 @@ def _find_enlarged(panel: Size, picture: Drawable, covered: PixelRect, look: Loo
     """The texels that cover these pixels of a panel, if they are clearly fewer."""
     spans: list[tuple[int, int]] = []
     for axis, corner in enumerate(find_origin(look, panel, picture.full_size)):
-        step = picture.size[axis] / (picture.full_size[axis] * look.zoom)
+        step = picture.size[axis] / (picture.full_size[axis] * look.pixel_size[axis])
         first, last = ((covered[axis] - corner) * step, (covered[axis] + covered[axis + 2] - corner) * step)
-        low, high = max(0, math.floor(first) - 1), min(picture.size[axis], math.ceil(last) + 1)
+        start, end = _find_span(picture, axis)
+        low, high = max(start, math.floor(first) - 1), min(end, math.ceil(last) + 1)
         if step > MAX_TEXEL_DENSITY:
             return None
         spans.append((low, max(1, high - low)))
@@ -181,14 +189,21 @@ def _find_enlarged(panel: Size, picture: Drawable, covered: PixelRect, look: Loo
 
 def _find_covered(panel: Size, pictures: list[Drawable], look: Look) -> PixelRect | None:
     """The pixels of the panel where there is any picture, as x, y, width, height."""
-    corners = [(find_origin(look, panel, picture.full_size), picture.full_size) for picture in pictures]
-    low = [max(0, min((math.floor(corner[axis]) for corner, _ in corners), default=0)) for axis in (0, 1)]
-    high = [
-        min(panel[axis], max((math.ceil(corner[axis] + size[axis] * look.zoom) for corner, size in corners), default=0))
-        for axis in (0, 1)
-    ]
+    low, high = [panel[0], panel[1]], [0, 0]
+    for picture in pictures:
+        for axis, corner in enumerate(find_origin(look, panel, picture.full_size)):
+            pixel = picture.full_size[axis] * look.pixel_size[axis] / picture.size[axis]
+            start, end = _find_span(picture, axis)
+            low[axis] = max(0, min(low[axis], math.floor(corner + start * pixel)))
+            high[axis] = min(panel[axis], max(high[axis], math.ceil(corner + end * pixel)))
     width, height = high[0] - low[0], high[1] - low[1]
     return (low[0], low[1], width, height) if min(width, height) > 0 else None
+
+
+def _find_span(picture: Drawable, axis: int) -> tuple[int, int]:
+    """The first pixel along an axis and the one after the last, of the frame and of what is held around it."""
+    start = picture.start[axis]
+    return min(start, 0), max(picture.size[axis], start + picture.texture.size[axis])
 
 
 def _identify(picture: Drawable | None) -> object:
@@ -197,6 +212,7 @@ def _identify(picture: Drawable | None) -> object:
         picture.key,
         picture.texture.native_handle,
         picture.start,
+        picture.texture.size,
         picture.size,
         picture.full_size,
         picture.channels,
@@ -210,7 +226,7 @@ def _set_look(program: ViewProgram, panel: Size, picture: Size, look: Look) -> N
         "channels": get_args(Channels).index(look.channels),
         "exposure": 2.0**look.exposure,
         "gamma": look.gamma,
-        "range": (look.low, look.high if look.high != look.low else look.low + 1e-6),
+        "range": (look.low, look.high if look.high != look.low else look.low + _LEAST_RANGE),
         "wipe_point": find_panel_point(look, panel, picture, (look.wipe[0] * picture[0], look.wipe[1] * picture[1])),
         "wipe_normal": (math.cos(angle), math.sin(angle)),
         "checker": look.checker,
@@ -219,7 +235,7 @@ def _set_look(program: ViewProgram, panel: Size, picture: Size, look: Look) -> N
         "background": look.background,
         "surround": look.surround,
     }
-    x, y, width, height = look.region or (-1e9, -1e9, 2e9, 2e9)
+    x, y, width, height = look.region or _EVERYWHERE
     corners = ((x, y), (x + width, y + height))
     uniforms["region"] = tuple(part for corner in corners for part in find_panel_point(look, panel, picture, corner))
     for name, setting in uniforms.items():

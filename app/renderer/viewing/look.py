@@ -20,7 +20,9 @@ class Look:
     """The settings of a viewer. Colors are display-referred; lengths on the picture are in its full-size pixels."""
 
     zoom: float = 1.0
-    """Panel pixels per full-size pixel of the picture."""
+    """Panel pixels per full-size pixel of the picture, down."""
+    stretch: float = 1.0
+    """How much wider than high a pixel of the picture is shown: its pixel aspect ratio."""
     pan: Point = (0.0, 0.0)
     """Panel pixels from the center of the panel to that of the picture."""
     channels: Channels = "color"
@@ -55,25 +57,32 @@ class Look:
     """x, y, width, height; what lies outside is dimmed."""
     surround: DisplayColor = (0.12, 0.12, 0.12)
 
+    @property
+    def pixel_size(self) -> Point:
+        """Panel pixels per full-size pixel of the picture, across and down."""
+        return self.zoom * self.stretch, self.zoom
+
 
 def find_origin(look: Look, panel: Size, picture: Size) -> Point:
     """The panel point where the picture's upper left corner lies, on whole pixels."""
-    x, y = (panel[axis] / 2 + look.pan[axis] - picture[axis] * look.zoom / 2 for axis in (0, 1))
+    x, y = (panel[axis] / 2 + look.pan[axis] - picture[axis] * look.pixel_size[axis] / 2 for axis in (0, 1))
     return float(round(x)), float(round(y))
 
 
 def find_picture_point(look: Look, panel: Size, picture: Size, point: Point) -> Point:
     """The point of the picture, in full-size pixels, under a point of the panel."""
     origin_x, origin_y = find_origin(look, panel, picture)
-    return (point[0] - origin_x) / look.zoom, (point[1] - origin_y) / look.zoom
+    across, down = look.pixel_size
+    return (point[0] - origin_x) / across, (point[1] - origin_y) / down
 
 
 def find_panel_point(look: Look, panel: Size, picture: Size, point: Point) -> Point:
     """Where a point of the picture, in full-size pixels, lies on the panel."""
     origin_x, origin_y = find_origin(look, panel, picture)
-    return point[0] * look.zoom + origin_x, point[1] * look.zoom + origin_y
+    across, down = look.pixel_size
+    return point[0] * across + origin_x, point[1] * down + origin_y
 
 
-def fit_zoom(panel: Size, picture: Size) -> float:
-    """The zoom at which the whole picture fills the panel."""
-    return min(panel[0] / picture[0], panel[1] / picture[1])
+def fit_zoom(panel: Size, picture: Size, stretch: float = 1.0) -> float:
+    """The zoom at which the whole picture, whose pixels are shown wider by `stretch`, fills the panel."""
+    return min(panel[0] / (picture[0] * stretch), panel[1] / picture[1])

@@ -36,15 +36,19 @@ class PixelProbe:
         with self._device.make_current():
             return self._device.read_region(texture, rect)
 
-    def read_small(self, texture: DeviceTexture, max_width: int) -> Array:
-        """A picture of at most that width, of pixels taken at even distances: [height, width, channels] of float32."""
-        across, down = texture.size
+    def read_small(self, texture: DeviceTexture, max_width: int, part: PixelRect | None = None) -> Array:
+        """A picture of at most that width, of pixels taken at even distances: [height, width, channels] of float32.
+
+        It shows a `part` of the texture, or all of it.
+        """
+        left, top, across, down = part or (0, 0, *texture.size)
         width = min(max_width, across)
         height = max(1, round(down * width / across))
         with self._device.save_draw_target():
             if self._decimation is None:
                 text = "".join(part.body for part in load_library().closure(("viewer/decimate",), "viewer"))
                 self._decimation = self._device.create_program(f"#version 410 core\n{text}")
+            self._decimation.set("first", (float(left), float(top)))
             self._decimation.set("texels", (across / width, down / height))
             target = self._device.create_texture((width, height), texture.components, "f4")
             try:
