@@ -57,7 +57,7 @@ def open_batch(output: Path, total: int, budget: int = 0, *, sandbox: Sandbox) -
     from ..errors import OutputError
     from ..renderer import Renderer, open_device
 
-    if reason := sandbox.fault(output):
+    if reason := sandbox.find_write_fault(output):
         raise OutputError(f"{output}: {reason}")
     try:
         output.mkdir(parents=True, exist_ok=True)

@@ -34,7 +34,7 @@ def add_burn_in(graph: Graph) -> Graph:
 
 def _find_free_name(graph: Graph) -> str:
     """A name that no node has."""
-    taken, number = {*graph.nodes, INPUTS, OUTPUTS}, 1
-    while (name := PRESET if number == 1 else f"{PRESET}_{number}") in taken:
+    used_names, number = {*graph.nodes, INPUTS, OUTPUTS}, 1
+    while (name := PRESET if number == 1 else f"{PRESET}_{number}") in used_names:
         number += 1
     return name

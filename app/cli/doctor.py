@@ -36,6 +36,7 @@ _EXTRAS = (
     ("video", "av", "videos cannot be read or written"),
     ("denoise", "pyoidn", "the node denoise cannot work"),
     ("fit", "cma", "halation fit cannot work"),
+    ("wgsl", "slangpy", "halation export --to wgsl and --to reshade cannot work"),
 )
 """Extras, a distribution of each, and what is lacking without it."""
 

@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 from . import parsing
 from .job_setup import (
@@ -25,7 +25,7 @@ from .job_setup import (
 )
 from .options import override_value, report_problems, resolve_inputs
 from .outcome import describe_fault, print_note
-from .progress import ProgressReporter, progress_reporter
+from .progress import progress_reporter
 from .watchdog import needs_watchdog
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from ..renderer.jobs.render_job import RenderJob
     from ..renderer.jobs.reports import ItemReport
 
-_FAILED = 1
+FAILED = 1
 """The exit code where a file has failed: that of rendering and writing, whatever the reason of each file."""
 
 _MAX_WRITERS = 4
@@ -43,10 +43,18 @@ _MAX_WRITERS = 4
 photos; more threads only take more memory."""
 
 
+class EntryProgress(Protocol):
+    """Shows files that are finished or have failed."""
+
+    def report_entry(self, facts: Mapping[str, Any], done_count: int, total: int) -> None:
+        """One more file is done, `done_count` of `total`."""
+        ...
+
+
 class BatchReporter:
     """Passes the report of every file on to a bar or to JSON lines, prints it with `--json`, and counts."""
 
-    def __init__(self, progress: ProgressReporter, total: int, as_json: bool) -> None:
+    def __init__(self, progress: EntryProgress, total: int, as_json: bool) -> None:
         self._progress, self._total, self._as_json = progress, total, as_json
         self.faults: list[tuple[str, str]] = []
         """The files that failed, and why."""
@@ -76,8 +84,8 @@ def execute_batch(job: RenderJob, graph: Graph, progress: Literal["bar", "json"]
             )
         else:
             reports = [render_entries(job, graph, batch_reporter.report_entry)]
-    _print_batch_report(_join_batch_reports(reports), batch_reporter, time.perf_counter() - started, as_json)
-    return _FAILED if batch_reporter.faults else 0
+    print_batch_report(_join_batch_reports(reports), batch_reporter, time.perf_counter() - started, as_json)
+    return FAILED if batch_reporter.faults else 0
 
 
 def render_entries(job: RenderJob, graph: Graph, report_entry: Callable[[Mapping[str, Any]], None]) -> dict[str, Any]:
@@ -90,7 +98,7 @@ def render_entries(job: RenderJob, graph: Graph, report_entry: Callable[[Mapping
     started, targets = time.perf_counter(), parsing.find_targets(graph, job.node)
     renderer = open_job_renderer(job, graph)
     opened_at = time.perf_counter()
-    items = ((entry.file, partial(_open_item, job, graph, entry, targets)) for entry in job.entries)
+    items = ((entry.file, partial(_open_entry, job, graph, entry, targets)) for entry in job.entries)
     writers = 1 if job.videos else min(_MAX_WRITERS, os.cpu_count() or 1)
     report = run_batch(
         renderer,
@@ -113,15 +121,24 @@ def check_first_entry(job: RenderJob, graph: Graph) -> None:
     resolve_inputs(graph, entry.inputs)
 
 
-def _open_item(job: RenderJob, graph: Graph, entry: RenderEntry, targets: Mapping[str, Port]) -> JobItem:
-    """What is rendered for one file. Raises HalationError."""
+def _open_entry(job: RenderJob, graph: Graph, entry: RenderEntry, targets: Mapping[str, Port]) -> JobItem:
+    return make_entry_item(job, open_entry_graph(graph, entry), entry, targets)
+
+
+def open_entry_graph(graph: Graph, entry: RenderEntry) -> Graph:
+    """The graph of a job with the values of one file. Raises HalationError."""
+    if entry.sets:
+        graph = _set_values(graph, entry)
+        _refuse_problems(graph)
+    return graph
+
+
+def make_entry_item(job: RenderJob, graph: Graph, entry: RenderEntry, targets: Mapping[str, Port]) -> JobItem:
+    """What is rendered for one file with its own graph. Raises HalationError."""
     from msgspec.structs import replace
 
     from ..renderer.jobs.item_session import JobItem
 
-    if entry.sets:
-        graph = _set_values(graph, entry)
-        _refuse_problems(graph)
     inputs = resolve_inputs(graph, entry.inputs)
     job = replace(job, destinations=entry.destinations)
     frames = job.frames or choose_frames(job, graph, inputs)
@@ -174,7 +191,7 @@ def _join_batch_reports(reports: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     return {**join_costs(reports), "data": list(dict.fromkeys(name for report in reports for name in report["data"]))}
 
 
-def _print_batch_report(report: Mapping[str, Any], counts: BatchReporter, seconds: float, as_json: bool) -> None:
+def print_batch_report(report: Mapping[str, Any], counts: BatchReporter, seconds: float, as_json: bool) -> None:
     """Print what was done in `seconds`, and every file that failed: as JSON, or as text to standard error."""
     print_report_notes(report)
     for file, sentence in counts.faults:

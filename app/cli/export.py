@@ -41,7 +41,7 @@ _Kind = Annotated[
     typer.Option(
         "--to",
         metavar="KIND",
-        help="isf, web, glsl, cube, clf or png; by default what the ending of the file says.",
+        help="isf, web, glsl, wgsl, python, reshade, cube, clf or png; by default what the ending of the file says.",
     ),
 ]
 _Output = Annotated[Path | None, typer.Option("-o", "--output", metavar="FILE", help="The file or folder to write.")]
@@ -79,8 +79,8 @@ def export(
 ) -> int:
     """Write a graph in the format of another program.
 
-    Writes pages for browsers, shaders and tables of colors. Where a node cannot be part of the format, the command
-    names it with the reason.
+    Writes pages for browsers, shaders, scripts and tables of colors. Where a node cannot be part of the format, the
+    command names it with the reason.
     """
     from ..errors import UsageError
     from ..export import ExportOrder, choose_kind

@@ -35,8 +35,8 @@ def default_text(value: Value) -> str:
     default = value.default
     if isinstance(default, Mapping):
         return ", ".join(cast("Mapping[str, object]", default)) or "none"
-    if isinstance(default, tuple) and value.type in ("curve", "ramp", "spline"):
-        word = {"curve": "point", "ramp": "stop", "spline": "point"}[value.type]
+    if isinstance(default, tuple) and value.type in ("curve", "ramp", "spline", "stroke"):
+        word = {"curve": "point", "ramp": "stop", "spline": "point", "stroke": "point"}[value.type]
         count = len(default) // value.length
         return f"{count} {word}{'' if count == 1 else 's'}"
     return format_value(default)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -10,10 +11,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from msgspec import structs
 
+from ..fit.value_patterns import CURVE_POINTS
 from ..resources.render_choices import DEFAULT_TIMEOUT
 from ..resources.sandbox import Sandbox
 from . import parsing
-from .fit_arguments import parse_comparison, parse_duration, parse_patterns
+from .fit_arguments import parse_comparison, parse_duration
 from .fit_progress import follow_fit
 from .options import (
     AsJson,
@@ -35,7 +37,7 @@ from .watchdog import Timeout, rerun_watched
 if TYPE_CHECKING:
     from ..fit.fitting import Comparison
     from ..fit.results import FitResult
-    from ..fit.search_space import ValuePattern
+    from ..fit.value_patterns import ValuePattern
     from ..graph import Graph, Port
 
 _To = Annotated[Path, typer.Option("--to", metavar="FILE", help="The picture that the graph is to come close to.")]
@@ -65,6 +67,10 @@ _Renders = Annotated[int, typer.Option(min=1, metavar="N", help="The most pictur
 _Points = Annotated[
     int, typer.Option(min=2, max=17, metavar="N", help="A curve of two points gets so many that may change.")
 ]
+_Follow = Annotated[
+    bool,
+    typer.Option("--follow", help="Print each better set of values as a line of JSON, and the result as the last one."),
+]
 _Show = Annotated[
     str, typer.Option("--show", metavar="NAME", help="Compare this output of the graph; by default the first.")
 ]
@@ -80,7 +86,7 @@ def fit(
     by: _By = "pixels",
     budget: _Budget = "60s",
     renders: _Renders = 5000,
-    points: _Points = 7,
+    points: _Points = CURVE_POINTS,
     inputs: Inputs = None,
     sets: Sets = None,
     node: Node = "",
@@ -89,6 +95,7 @@ def fit(
     frame: OneFrame = None,
     view: View = "",
     timeout: Timeout = DEFAULT_TIMEOUT,
+    follow: _Follow = False,
     as_json: AsJson = False,
     *,
     sandbox: Sandbox,
@@ -97,8 +104,9 @@ def fit(
 
     Writes the graph with these values. Ctrl-C ends the search and keeps the best values so far.
     """
-    from ..fit.least_squares import check_fit_libraries
+    from ..fit.libraries import check_fit_libraries
     from ..fit.report import write_fit_report
+    from ..fit.value_patterns import parse_patterns
 
     limits = (parse_duration(budget), renders)
     comparison, patterns, canvas = parse_comparison(by), parse_patterns(values), parsing.parse_size(size)
@@ -111,12 +119,14 @@ def fit(
     bindings = resolve_inputs(opened_graph, parsing.parse_inputs(inputs))
     targets = parsing.find_targets(opened_graph, node)
     shown = choose_output(opened_graph, show, node)
-    request = _FitRequest(bindings, targets, canvas, frame, shown, view, to, comparison, points, limits)
+    request = _FitRequest(bindings, targets, canvas, frame, shown, view, to, comparison, points, limits, follow)
     result = _search(opened_graph, patterns, request, sandbox)
     _write_graph(result.graph, output, sandbox)
     if report is not None:
         write_fit_report(result, f"{graph.stem if str(graph) != '-' else 'graph'} like {to.name}", report, sandbox)
-    if as_json:
+    if follow:
+        print(json.dumps(_fit_facts(result, output, report)))
+    elif as_json:
         print_json(_fit_facts(result, output, report))
     else:
         _print_result(result, output, report)
@@ -137,22 +147,24 @@ class _FitRequest:
     comparison: Comparison
     points: int
     limits: tuple[float, int]
+    prints_lines: bool
 
 
-def _search(graph: Graph, patterns: Sequence[ValuePattern], wanted: _FitRequest, sandbox: Sandbox) -> FitResult:
+def _search(graph: Graph, patterns: Sequence[ValuePattern], options: _FitRequest, sandbox: Sandbox) -> FitResult:
     from ..fit.fitting import FitTask
     from ..fit.search_space import find_search_space
     from ..fit.shown_output import ShownOutput, holds_light
     from ..renderer import Renderer, RenderRequest, open_device
 
-    space = find_search_space(graph, patterns, wanted.points)
-    is_light = holds_light(wanted.reference, sandbox)
+    space = find_search_space(graph, patterns, options.points)
+    is_light = holds_light(options.reference, sandbox)
     renderer = Renderer(open_device(sandbox=sandbox), sandbox=sandbox)
-    request = RenderRequest(wanted.inputs, wanted.targets, wanted.size, precision="float")
-    frame = renderer.find_frames(graph, request)[0] if wanted.frame is None else wanted.frame
-    output = ShownOutput(renderer, graph, structs.replace(request, frame=frame), wanted.output, wanted.view, is_light)
-    reference = output.read_reference(wanted.reference, sandbox)
-    result = follow_fit(FitTask(space, output, reference, wanted.comparison, *wanted.limits))
+    request = RenderRequest(options.inputs, options.targets, options.size, precision="float")
+    frame = renderer.find_frames(graph, request)[0] if options.frame is None else options.frame
+    output = ShownOutput(renderer, graph, structs.replace(request, frame=frame), options.output, options.view, is_light)
+    reference = output.read_reference(options.reference, sandbox)
+    task = FitTask(space, output, reference, options.comparison, *options.limits)
+    result = follow_fit(task, options.prints_lines)
     renderer.close()
     return result
 
@@ -194,6 +206,7 @@ def _fit_facts(result: FitResult, output: Path, report: Path | None) -> dict[str
         "error": list(result.errors),
         **({"delta_e": list(result.delta_e)} if result.delta_e else {}),
         "values": [asdict(item) for item in result.values],
+        "settings": dict(result.settings),
         "renders": result.renders,
         "seconds": round(result.seconds, 3),
         "stopped": result.stopped,

@@ -13,13 +13,15 @@ import os
 import subprocess
 import tempfile
 import threading
+import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import HalationError, rebuild_fault
-from ..resources.heartbeat import Watchdog
+from ..resources.atomic_write import remove_files_of
+from ..resources.heartbeat import Watchdog, name_signal
 from ..resources.interrupts import delay_interrupts
 from .outcome import print_note
 from .watchdog import CHECK_INTERVAL
@@ -27,6 +29,10 @@ from .watchdog import CHECK_INTERVAL
 if TYPE_CHECKING:
     from ..renderer.jobs.render_job import RenderJob
     from .progress import ProgressReporter
+
+
+_PATIENCE = 1.2
+"""Seconds that a helper may take to end and to remove its unfinished files: Ctrl-C ends all within two."""
 
 
 def run_helpers(
@@ -65,8 +71,14 @@ def join_reports(reports: Sequence[dict[str, Any]]) -> dict[str, Any]:
     return {**total, "frames": sorted(total["frames"]), "kept": sorted(total["kept"])}
 
 
+def join_chunk_costs(reports: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """What chunks on several machines have in their reports of costs, as one: the bytes are those of the largest."""
+    data = dict.fromkeys(name for report in reports for name in report["data"])
+    return {**join_costs(reports), "peak_bytes": max(report["peak_bytes"] for report in reports), "data": list(data)}
+
+
 def join_costs(reports: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """What several processes have in their reports of costs, as one, with all else of the first."""
+    """What processes that work side by side have in their reports of costs, as one, with all else of the first."""
     total = dict(reports[0])
     for report in reports[1:]:
         for name in ("passes", "programs", "peak_bytes"):
@@ -83,9 +95,10 @@ class _Helper:
     def __init__(self, job: RenderJob, watchdog: Watchdog | None, environment: Mapping[str, str]) -> None:
         from ..renderer.jobs.render_job import worker_command
 
-        self.job, self.watchdog, self._is_stopped = job, watchdog, False
+        self.job, self.watchdog = job, watchdog
+        self._stopped_at: float | None = None
         self.process = subprocess.Popen(
-            worker_command(),
+            [*worker_command(), "--share"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -96,10 +109,20 @@ class _Helper:
 
     def stop(self) -> None:
         """Ask it to end, once: a second signal would interrupt it while it removes what it has begun to write."""
-        if self.process.poll() is None and not self._is_stopped:
-            self._is_stopped = True
+        if self.process.poll() is None and self._stopped_at is None:
+            self._stopped_at = time.monotonic()
             with contextlib.suppress(OSError):
                 self.process.terminate()
+
+    def end_late(self) -> None:
+        """Kill it if it was asked to end some time ago: a long pass of a driver cannot be interrupted."""
+        if self._stopped_at is not None and time.monotonic() - self._stopped_at > _PATIENCE:
+            self.process.kill()
+
+    def remove_files(self) -> None:
+        """Remove the unfinished files of a helper that was killed."""
+        destinations = [*self.job.files, *(pair for entry in self.job.entries for pair in entry.destinations)]
+        remove_files_of((self.process.pid,), (path for _, path in destinations))
 
 
 class _HelperPool:
@@ -151,6 +174,7 @@ class _HelperPool:
         while wait(ends, CHECK_INTERVAL).not_done:
             for helper in self._helpers:
                 self._check(helper)
+                helper.end_late()
 
     def _check(self, helper: _Helper) -> None:
         """Kill a helper whose code takes too long, and stop the others."""
@@ -182,6 +206,8 @@ class _HelperPool:
                     self._handle_line(line.rstrip())
             with contextlib.suppress(ValueError):
                 report = json.loads(process.stdout.read())
+        if process.returncode < 0:
+            helper.remove_files()
         with self._lock:
             if process.returncode == 0:
                 self._reports.append(report)
@@ -189,9 +215,9 @@ class _HelperPool:
                 self._fault = helper.watchdog.explain_signal(-process.returncode)
                 self._stop()
             elif self._fault is None:
-                self._fault = rebuild_fault(
-                    {"message": f"a process was ended by {process.returncode}", **report.get("error", {})}
-                )
+                end = name_signal(-process.returncode) if process.returncode < 0 else f"code {process.returncode}"
+                sentence = f"a process that renders was ended from outside ({end}): use --resume to go on"
+                self._fault = rebuild_fault({"message": sentence, **report.get("error", {})})
                 self._stop()
 
     def _handle_line(self, line: str) -> None:

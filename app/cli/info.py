@@ -107,6 +107,7 @@ def _analysis_facts(analysis: RenderAnalysis, sandbox: Sandbox) -> dict[str, Any
         "file": header.info.path,
         "format": header.info.format,
         "size": list(header.info.size),
+        "pixel_aspect": header.info.pixel_aspect,
         "renderer": analysis.maker.renderer,
         "renderer_reason": analysis.maker.reason,
         "parts": [_part_facts(part) for part in header.parts],

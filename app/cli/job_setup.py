@@ -26,25 +26,27 @@ def open_job_renderer(job: RenderJob, graph: Graph, prefetcher: Prefetcher | Non
     return renderer
 
 
-def open_renderer(
-    job: RenderJob, graph: Graph, prefetcher: Prefetcher | None = None, *, stays_open: bool = False
-) -> Renderer:
-    """Open the device of a job. Raises DeviceError.
-
-    If it `stays_open` for other jobs with the same pictures, it keeps them from one job to the next.
-    """
-    from ..renderer import DEFAULT_BUDGET, Renderer, open_device, open_pinned
+def open_renderer(job: RenderJob, graph: Graph, prefetcher: Prefetcher | None = None) -> Renderer:
+    """Open the device of a job. Raises DeviceError."""
+    from ..renderer import Renderer, open_device, open_pinned
 
     device = (
         open_pinned(job.memory, sandbox=job.sandbox)
         if job.deterministic
         else open_device(job.form, job.memory, sandbox=job.sandbox)
     )
-    # Without pre-roll a frame needs the one before it at most; with pre-roll it needs more, so results are kept.
-    leads_up = stays_open or (len(job.frames) != 1 and graph.settings.preroll is not None)
-    return Renderer(
-        device, budget=DEFAULT_BUDGET if leads_up and not job.memory else 0, prefetcher=prefetcher, sandbox=job.sandbox
-    )
+    budget = choose_budget(job, graph) if len(job.frames) != 1 else 0
+    return Renderer(device, budget=budget, prefetcher=prefetcher, sandbox=job.sandbox)
+
+
+def choose_budget(job: RenderJob, graph: Graph) -> int:
+    """The bytes of results that stay on the device from frame to frame.
+
+    With pre-roll a frame needs several before it. Without, it needs one at most, which its run hands on.
+    """
+    from ..renderer import DEFAULT_BUDGET
+
+    return DEFAULT_BUDGET if graph.settings.preroll is not None and not job.memory else 0
 
 
 def make_request(job: RenderJob, inputs: Mapping[str, str], targets: Mapping[str, Port]) -> RenderRequest:

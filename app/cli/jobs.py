@@ -78,13 +78,13 @@ def _follow(board: JobBoard, name: str, as_json: bool) -> int:
     for note in status.notes:
         print_note(note)
     for frame, sentence in status.faults.items():
-        print_note(f"frame {frame}: {sentence}" if frame else sentence)
+        print_note(f"{status.unit} {frame}: {sentence}" if frame else sentence)
     return 1 if status.state == "failed" else 0
 
 
 def _describe(status: JobStatus) -> str:
     """A line about a job."""
-    parts = [f"{status.name}  {status.state}  {status.done} of {write_count(status.total, 'frame')}"]
+    parts = [f"{status.name}  {status.state}  {status.done} of {write_count(status.total, status.unit)}"]
     if status.seconds:
         parts.append(f"{status.seconds:.1f} s")
     if status.state == "rendering" and status.workers:

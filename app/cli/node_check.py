@@ -18,6 +18,7 @@ def check_nodes(name: str, as_json: bool, sandbox: Sandbox) -> int:
     from halation.nodes import plugins
 
     from ..regression.node_promises import find_declaration_faults, find_render_faults, find_shader_faults
+    from ..regression.read_areas import find_overlap_faults
     from ..renderer import Renderer, open_device
 
     classes, chosen = _choose_nodes(name, plugins())
@@ -27,6 +28,7 @@ def check_nodes(name: str, as_json: bool, sandbox: Sandbox) -> int:
         for id, node in classes.items():
             faults[id] = [*find_declaration_faults(node), *find_shader_faults(node)]
             faults[id] += () if faults[id] else find_render_faults(renderer, node)
+            faults[id] += () if faults[id] else find_overlap_faults(renderer, node)
     finally:
         renderer.close()
     for shader, sentences in _find_file_faults(chosen, classes):

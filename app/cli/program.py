@@ -170,7 +170,9 @@ def run(arguments: Sequence[str]) -> int:
     as_json = _prints_json(arguments)
     try:
         if (memory := memory_limit()) < _LEAST_MEMORY:
-            raise MemoryError(f"{memory / 2**20:.0f} MiB of memory are too few (ulimit -v): allow 288 MiB at least")
+            raise MemoryError(
+                f"{memory / 2**20:.0f} MiB of memory are too few (ulimit -v): allow {_LEAST_MEMORY >> 20} MiB at least"
+            )
         words = tuple(arguments)
         code = get_command(app).main(list(words), prog_name="halation", standalone_mode=False, obj=words)
     except SystemExit as end:  # so click ends completions (0), and when the program that read its help has ended (1)

@@ -151,7 +151,7 @@ def render(
     destinations = parsing.parse_destinations(output or ())
     entries: tuple[RenderEntry, ...] = ()
     if each:
-        from .each import expand_entries, names_file
+        from ..renderer.jobs.entry_list import expand_entries, names_file
 
         entries = expand_entries(each, files, settings, destinations, read_standard_input, sandbox)
         settings = {name: text for name, text in settings.items() if not names_file(text)}

@@ -15,7 +15,7 @@ from ..resources.sandbox import Sandbox
 from . import parsing
 from .options import Form, Memory
 from .outcome import INTERRUPTED, print_note
-from .watchdog import Timeout, run_service, run_session
+from .watchdog import Timeout, run_service, run_stream_service
 
 if TYPE_CHECKING:
     from ..serving.service import ServiceLimits
@@ -54,8 +54,7 @@ def serve(
     def work() -> int:
         return _serve(socket, form_of_passes, memory_limit, ServiceLimits(limit, max_pixels), sandbox)
 
-    # Without a socket the requests that wait are in the process that was stopped: the client has to start another.
-    return (run_session if socket is None else run_service)(work, timeout, as_json)
+    return (run_stream_service if socket is None else run_service)(work, timeout, as_json)
 
 
 def _serve(path: Path | None, form: parsing.Form | None, memory: int, limits: ServiceLimits, sandbox: Sandbox) -> int:

@@ -169,7 +169,8 @@ def _list_words(
 
     yield "render"
     is_preset = find_preset(graph.stem) == graph
-    yield graph.stem if is_preset else FarmFile("", str(graph), about="the graph")
+    path = f"./{graph}" if str(graph).startswith("-") else str(graph)  # else it would be an option
+    yield graph.stem if is_preset else FarmFile("", path, about="the graph")
     for name, text in parsing.parse_inputs(inputs).items():
         file, layer = split_layer(text)
         before, after = f"--input={name}=" if name else "--input=", f":{layer}" if layer else ""

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..errors import DeviceError
+from ..errors import DeviceError, HalationError
 from ..resources.heartbeat import BEACON_FILE, Watchdog, explain_memory_limit, name_signal
 from ..resources.program import module_command
 from .outcome import flush_output, print_note, report_failure
@@ -139,13 +139,52 @@ def run_service(work: Callable[[], int], timeout: float, as_json: bool) -> int:
             print_note(f"{fault}; the server begins again")
 
 
+def run_stream_service(work: Callable[[], int], timeout: float, as_json: bool) -> int:
+    """As `run_service`, for work that answers requests on standard input: the one whose code was stopped gets an error.
+
+    This process reads the requests, and hands them to its copy one at a time: the others are answered by the next copy.
+    """
+    if not _may_watch():
+        return work()
+    from ..serving.stream_relay import StreamRelay
+
+    with contextlib.suppress(BrokenPipeError), os.fdopen(os.dup(1), "wb") as replies:
+        relay = StreamRelay(0, replies)
+
+        def work_behind_relay() -> int:
+            relay.enter()
+            return work()
+
+        while True:
+            try:
+                with relay.open_pipes():
+                    return run_forked(work_behind_relay, timeout, 0, as_json, tries_first=True, wait=relay.wait)
+            except HalationError as fault:
+                if not relay.fail_request(fault):
+                    raise
+                print_note(f"{fault}; the server begins again")
+    return 0
+
+
+def wait_for_end(handle: int, seconds: float) -> bool:
+    """Wait for a process for some time; True if it has ended."""
+    return bool(select.select([handle], [], [], seconds)[0])
+
+
 def run_forked(
-    work: Callable[[], int], timeout: float, memory: int, as_json: bool, *, tries_first: bool = False
+    work: Callable[[], int],
+    timeout: float,
+    memory: int,
+    as_json: bool,
+    *,
+    tries_first: bool = False,
+    wait: Callable[[int, float], bool] = wait_for_end,
 ) -> int:
     """Do the work in a copy of this process, report what it raises, and return its exit code; this one watches.
 
-    A copy has loaded all that this one has, so it costs a few milliseconds instead of a start. Raises DeviceError for
-    code that takes too long, takes too much memory, or ends its process.
+    A copy has loaded all that this one has, so it costs a few milliseconds instead of a start. `wait` may do more in
+    the meantime than to wait. Raises DeviceError for code that takes too long, takes too much memory, or ends its
+    process.
     """
     import tempfile  # few graphs have such code
 
@@ -162,7 +201,7 @@ def run_forked(
         handle = os.pidfd_open(process)
         try:
             with relay_requests(process, is_copy=True) as requests:
-                while not select.select([handle], [], [], CHECK_INTERVAL)[0]:
+                while not wait(handle, CHECK_INTERVAL):
                     if fault := watchdog.check(process):
                         os.kill(process, signal.SIGKILL)
                         os.waitpid(process, 0)

@@ -21,6 +21,13 @@ def worker(
     chunks: Annotated[
         bool, typer.Option("--chunks", help="Read chunks of frames instead, one per line, and render each.")
     ] = False,
+    share: Annotated[
+        bool, typer.Option("--share", help="Render a share of the files of another process, which joins the reports.")
+    ] = False,
+    cluster: Annotated[
+        str,
+        typer.Option("--on", metavar="ADDRESS", help="Have the workers of a cluster render it, and report as they do."),
+    ] = "",
 ) -> int:
     """Run the render job that is read as JSON from standard input, and report in JSON."""
     from msgspec.structs import replace
@@ -37,8 +44,12 @@ def worker(
     job = RenderJob.from_json(read_standard_input())
     if job.sandbox.root:
         job = replace(job, sandbox=read_process_sandbox().narrow(job.sandbox.root))
-    if not job.entries:
-        return execute(job, "json", as_json)
+    if cluster:
+        from .execute_cluster import ClusterOptions, execute_on_cluster
+
+        return execute_on_cluster(job, ClusterOptions(cluster), "json", as_json and not job.entries)
+    if not (job.entries and share):  # of many files, lines of progress say all that there is to know
+        return execute(job, "json", as_json and not job.entries)
     lines, total, counter = JsonLines(), len(job.entries), count(1)
     print_json(render_entries(job, open_job_graph(job), lambda facts: lines.report_entry(facts, next(counter), total)))
     return 0

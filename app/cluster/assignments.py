@@ -9,6 +9,10 @@ from msgspec import Struct
 
 from .chunk import ChunkStage
 
+_NEWEST = 0.1
+"""How much the newest frame counts in the mean cost: about the last ten frames count, so that one slow frame does not
+make chunks short. Chosen by judgement."""
+
 CHUNK_SECONDS = 4.0
 """Seconds that a chunk is meant to take. The last frame of a chunk is written while nothing else is rendered, which
 takes some hundredths of a second: about 1 % of this time. Chosen so, and short enough for an even end."""
@@ -40,7 +44,7 @@ def count_chunk(cost: float) -> int:
 def average_cost(cost: float, seconds: Sequence[float]) -> float:
     """The mean cost of frames, where newer ones count more, with those of another chunk."""
     for frame_cost in seconds:
-        cost = frame_cost if cost == 0.0 else 0.9 * cost + 0.1 * frame_cost
+        cost = frame_cost if cost == 0.0 else (1.0 - _NEWEST) * cost + _NEWEST * frame_cost
     return cost
 
 

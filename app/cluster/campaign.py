@@ -5,19 +5,19 @@ from __future__ import annotations
 import contextlib
 import json
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, Any, Protocol, cast
 from uuid import uuid4
 
-from msgspec import Struct, field
+from msgspec import Struct, convert, field
 from msgspec.structs import replace
 
 from ..errors import RenderError, rebuild_fault
 from ..renderer.jobs.shared_results import remove_shared_folder
 from .assignments import MAX_ATTEMPTS, Assignment, AssignmentQueue
-from .chunk import ChunkReport, FileMark, FrameChunk, StageReport
+from .chunk import ChunkReport, EntryOutcome, FileMark, FrameChunk, StageReport
 from .staged_assignments import StagedAssignments
 from .worker_task import read_version, remove_results, render_chunk
 from .workers import WorkerRoster
@@ -44,8 +44,8 @@ _POINTLESS = frozenset({"UsageError", "GraphError", "DocumentError"})
 class CampaignListener(Protocol):
     """Is told how far the frames are."""
 
-    def report_progress(self, frames: Mapping[int, float], workers: int) -> None:
-        """These frames are finished, with their seconds; so many workers render."""
+    def report_progress(self, report: CampaignReport, workers: int) -> None:
+        """What has come of the frames so far; so many workers render."""
         ...
 
     def report_note(self, sentence: str) -> None:
@@ -54,7 +54,10 @@ class CampaignListener(Protocol):
 
 
 class CampaignReport(Struct):
-    """What came of the frames: seconds of each that is finished, and why each other one cannot be rendered."""
+    """What came of the frames: seconds of each that is finished, and why each other one cannot be rendered.
+
+    Where a job has many files, their numbers stand for frames, and `entries` say more about them.
+    """
 
     seconds: dict[int, float] = field(default_factory=dict[int, float])
     kept: set[int] = field(default_factory=set[int])
@@ -64,6 +67,11 @@ class CampaignReport(Struct):
     chunks: int = 0
     stages: Mapping[str, int] = field(default_factory=dict[str, int])
     """How many frames were rendered by each stage that comes before the frames."""
+    entries: dict[int, EntryOutcome] = field(default_factory=dict[int, EntryOutcome])
+
+    def list_missing(self, parts: Iterable[int]) -> tuple[int, ...]:
+        """Those of these frames or files of which nothing is known yet."""
+        return tuple(part for part in parts if part not in self.seconds and part not in self.faults)
 
 
 class FrameCampaign:
@@ -131,10 +139,9 @@ class FrameCampaign:
         """Hand a chunk to Dask."""
         kind = assignment.stage.kind if assignment.stage else "frames"
         # The frames of a stage may be none of those whose files are written.
-        job_frames = assignment.frames if kind in ("frames", "check") else self._chunk.job.frames[:1]
+        parts = assignment.frames if kind in ("frames", "check") else self._chunk.parts[:1]
         chunk = replace(
-            self._chunk,
-            job=replace(self._chunk.job, frames=job_frames),
+            self._chunk.take_parts(parts),
             marks=self._mark_files(assignment.frames),
             stage=assignment.stage,
             slots=self._workers.count_slots_by_machine(),
@@ -179,10 +186,19 @@ class FrameCampaign:
             message = self._inbox.get(timeout=_POLL)
             while True:
                 if isinstance(message, Mapping):
-                    self._note_frames({event["frame"]: event["seconds"] for event in message["frames"]})
+                    self._note_events(message["frames"])
                 else:
                     self._take_in(message)
                 message = self._inbox.get_nowait()
+
+    def _note_events(self, events: Iterable[Mapping[str, Any]]) -> None:
+        """Take in what a worker says of frames while it renders others."""
+        for event in events:
+            if event["kept"]:
+                self.report.kept.add(event["frame"])
+            if "entry" in event:
+                self.report.entries[event["frame"]] = convert(event["entry"], EntryOutcome)
+        self._note_frames({event["frame"]: event["seconds"] for event in events})
 
     def _take_in(self, future: Future[str]) -> None:
         """What has come of a chunk."""
@@ -211,19 +227,23 @@ class FrameCampaign:
         if report.stage is not None and assignment.stage is not None:
             self._judge_stage(report, report.stage, assignment)
             return
-        self._note_frames(report.seconds)
         self.report.kept.update(report.kept)
+        self.report.entries.update(report.entries)
+        self._note_frames(report.seconds)
         self.report.workers.add(report.worker)
         self.report.costs += [report.costs] if report.costs else []
         self._frames.note_cost([cost for frame, cost in report.seconds.items() if frame not in report.kept])
-        missing = [frame for frame in assignment.frames if frame not in self.report.seconds]
+        missing = self._list_missing(report, assignment)
         if report.death:
             is_stage = assignment.stage is not None and assignment.stage.kind != "frames"
             lost = self._frames.put_suspects(assignment.frames if is_stage else missing, assignment, report.worker)
             self._give_up(lost, f"on {MAX_ATTEMPTS} tries, the last on {report.worker}: {report.death}")
             return
-        for frame in missing:
-            self._judge_fault(frame, report, assignment)
+        if missing and self._chunk.is_chain:
+            self._judge_chain(missing, report, assignment)
+        else:
+            for frame in missing:
+                self._judge_fault(frame, report, assignment)
         if report.faults:
             sentence = str(next(iter(report.faults.values()))["message"])
             has_finished = bool(report.seconds)
@@ -252,17 +272,43 @@ class FrameCampaign:
     def _judge_fault(self, frame: int, report: ChunkReport, assignment: Assignment) -> None:
         """Try a frame on another worker that cannot be rendered on one, or give it up."""
         facts = report.faults.get(frame)
-        frames = assignment.frames if self._chunk.is_chain else (frame,)
         tried = assignment.tried | {report.worker}
         if facts is None:
             self._frames.put_back(replace(assignment, frames=(frame,)))
+        elif facts["kind"] in _POINTLESS and self._chunk.numbers:
+            self._note_faults({frame: facts})
         elif facts["kind"] in _POINTLESS:
             raise rebuild_fault(facts)
         elif assignment.attempts + 1 < MAX_ATTEMPTS and set(self._workers.usable) - tried:
-            if frame == frames[0] or not self._chunk.is_chain:
-                self._frames.put_back(replace(assignment, frames=frames, attempts=assignment.attempts + 1, tried=tried))
+            self._frames.put_back(replace(assignment, frames=(frame,), attempts=assignment.attempts + 1, tried=tried))
         else:
             self._note_faults({frame: facts})
+
+    def _judge_chain(self, missing: list[int], report: ChunkReport, assignment: Assignment) -> None:
+        """Try the rest of a chain on another worker, or give it up: none of it can be rendered without the first."""
+        facts, tried = report.faults.get(missing[0]), assignment.tried | {report.worker}
+        if facts is not None and facts["kind"] in _POINTLESS:
+            raise rebuild_fault(facts)
+        if facts is None:
+            self._frames.put_back(replace(assignment, frames=tuple(missing)))
+        elif assignment.attempts + 1 < MAX_ATTEMPTS and set(self._workers.usable) - tried:
+            rest = replace(assignment, frames=tuple(missing), attempts=assignment.attempts + 1, tried=tried)
+            self._frames.put_back(rest)
+        else:
+            at_fault = int(facts.get("frame", missing[0]))
+            sentence = f"one worker renders all frames, and frame {at_fault} cannot be rendered"
+            self._note_faults({frame: {**facts, "message": sentence} for frame in missing} | {at_fault: facts})
+
+    def _list_missing(self, report: ChunkReport, assignment: Assignment) -> list[int]:
+        """The frames of a chunk that are not finished. Of a video that is all of them, until it is complete."""
+        frames = assignment.frames
+        if not (self._chunk.is_chain and self._chunk.job.videos):
+            return list(self.report.list_missing(frames))
+        if all(frame in report.seconds for frame in frames) and not report.faults and not report.death:
+            return []
+        for frame in frames:
+            self.report.seconds.pop(frame, None)
+        return list(frames)
 
     def _judge_loss(self, fault: BaseException | None, assignment: Assignment) -> None:
         """Decide about a chunk that Dask has given up: its workers ended, one after the other."""
@@ -283,12 +329,13 @@ class FrameCampaign:
         self.report.faults |= faults
         if isinstance(self._frames, StagedAssignments):
             self._frames.finish(faults)
+        self._listener.report_progress(self.report, len(self._workers.usable))
 
     def _note_frames(self, seconds: Mapping[int, float]) -> None:
         self.report.seconds |= seconds
         if isinstance(self._frames, StagedAssignments):
             self._frames.finish(seconds)
-        self._listener.report_progress(self.report.seconds, len(self._workers.usable))
+        self._listener.report_progress(self.report, len(self._workers.usable))
 
     # --- workers -----------------------------------------------------------------------------------------------------
 
@@ -345,7 +392,6 @@ class FrameCampaign:
 
 def _open_assignments(chunk: FrameChunk) -> AssignmentQueue | StagedAssignments:
     """The frames of a job, with their stages if it has some."""
-    frames = chunk.job.frames
     if chunk.stage is None:
-        return AssignmentQueue(frames, is_chain=chunk.is_chain)
-    return StagedAssignments(frames, chunk.stage.frame_before, chunk.stage.folder, checks=chunk.job.resume)
+        return AssignmentQueue(chunk.parts, is_chain=chunk.is_chain)
+    return StagedAssignments(chunk.job.frames, chunk.stage.frame_before, chunk.stage.folder, checks=chunk.job.resume)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any, Literal
 
 from msgspec import Struct, field
+from msgspec.structs import replace
 
 from ..renderer.jobs.render_job import RenderJob
 from ..renderer.jobs.shared_results import StoredMemory
@@ -53,7 +54,7 @@ class StageReport(Struct, frozen=True, omit_defaults=True):
 
 
 class FrameChunk(Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=True):
-    """Some frames of a job.
+    """Some parts of a job: frames, or files where it has many.
 
     The `job` has the whole graph as its `document`, whose relative paths start at `folder`, and absolute paths. They
     are those of the machine that has sent it: `path_map` says where files are elsewhere. `marks` are the files that
@@ -67,6 +68,8 @@ class FrameChunk(Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=
     contents: Mapping[str, str] = field(default_factory=dict[str, str])
     versions: Mapping[str, str] = field(default_factory=dict[str, str])
     """The version of everything that decides pixels, by its name (see `versions`)."""
+    numbers: tuple[int, ...] = ()
+    """Where the job has many files (`entries`): their numbers, from 1 on. They are its parts instead of its frames."""
     is_chain: bool = False
     """True if each frame needs the one before it."""
     stage: ChunkStage | None = None
@@ -75,6 +78,18 @@ class FrameChunk(Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=
     """The Dask topic to which finished frames are reported."""
     slots: Mapping[str, int] = field(default_factory=dict[str, int])
     """How many chunks are rendered side by side on a machine, by its name in the network."""
+
+    @property
+    def parts(self) -> tuple[int, ...]:
+        """What is rendered each by itself: the numbers of its frames, or of its files."""
+        return self.numbers or self.job.frames
+
+    def take_parts(self, parts: tuple[int, ...]) -> FrameChunk:
+        """The chunk with only these of its parts."""
+        if not self.numbers:
+            return replace(self, job=replace(self.job, frames=parts))
+        entries = dict(zip(self.numbers, self.job.entries, strict=True))
+        return replace(self, job=replace(self.job, entries=tuple(entries[number] for number in parts)), numbers=parts)
 
     def to_json(self) -> str:
         """The chunk as one line of JSON in ASCII."""
@@ -86,11 +101,19 @@ class FrameChunk(Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=
         return parse_struct(text, FrameChunk, "the text is not a chunk of frames")
 
 
+class EntryOutcome(Struct, frozen=True, omit_defaults=True):
+    """What came of one of many files: the frames that were rendered for it, and in how many passes."""
+
+    frames: tuple[int, ...] = ()
+    passes: int = 0
+
+
 class ChunkReport(Struct, frozen=True, omit_defaults=True):
     """What came of a chunk on `worker`, as its address.
 
-    `seconds` are those of each finished frame; `faults` describe the frames that cannot be rendered. `death` says how
-    the process ended that rendered, `refusal` why this worker can render no chunk of the job.
+    `seconds` are those of each finished part; `faults` describe the parts that cannot be rendered. `death` says how
+    the process ended that rendered, `refusal` why this worker can render no chunk of the job. `entries` say more where
+    the parts are files.
     """
 
     worker: str
@@ -103,6 +126,7 @@ class ChunkReport(Struct, frozen=True, omit_defaults=True):
     refusal: str = ""
     is_cancelled: bool = False
     stage: StageReport | None = None
+    entries: Mapping[int, EntryOutcome] = field(default_factory=dict[int, EntryOutcome])
 
     def to_json(self) -> str:
         """The report as a line of JSON."""

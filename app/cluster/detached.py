@@ -19,13 +19,16 @@ from msgspec.structs import replace
 
 from ..errors import UsageError
 from ..resources.struct_json import read_struct, write_struct
-from .campaign import FrameCampaign
+from .campaign import CampaignReport, FrameCampaign
 from .chunk import FileMark, FrameChunk
 from .worker_task import make_cancel_check, read_version
 from .workers import WorkerRoster
 
 if TYPE_CHECKING:
     from distributed import Client, Future, Worker
+
+_POLL_SECONDS = 0.01
+"""Between two looks at what the scheduler has answered: short for the user, and hardly any work."""
 
 JOB_PREFIX = "halation-job-"
 _REPORT_INTERVAL = 0.5
@@ -47,7 +50,7 @@ class DetachedCampaign(Struct, frozen=True):
 
 
 class JobStatus(Struct, frozen=True):
-    """How far a detached job is. `faults` are sentences by frame."""
+    """How far a detached job is. `faults` are sentences by frame, or by file where it has many."""
 
     name: str
     graph: str
@@ -59,6 +62,7 @@ class JobStatus(Struct, frozen=True):
     slowest: Mapping[str, float] = field(default_factory=dict[str, float])
     faults: Mapping[str, str] = field(default_factory=dict[str, str])
     notes: tuple[str, ...] = ()
+    unit: Literal["frame", "file"] = "frame"
 
 
 def run_campaign(text: str) -> str:
@@ -84,9 +88,14 @@ def run_campaign(text: str) -> str:
             is_cancelled,
         )
         report = frames.run()
-    faults = {str(frame): str(facts["message"]) for frame, facts in sorted(report.faults.items())}
+    faults = {_name_part(campaign.chunk, part): str(facts["message"]) for part, facts in sorted(report.faults.items())}
     state: JobState = "failed" if faults else "finished"
     return write_struct(listener.describe(report.seconds, state, faults))
+
+
+def _name_part(chunk: FrameChunk, part: int) -> str:
+    """The number of a frame, or the name of a file."""
+    return dict(zip(chunk.numbers, chunk.job.entries, strict=True))[part].file if chunk.numbers else str(part)
 
 
 def send_campaign(client: Client, campaign: DetachedCampaign, graph: str) -> str:
@@ -102,7 +111,10 @@ def send_campaign(client: Client, campaign: DetachedCampaign, graph: str) -> str
     text = write_struct(campaign)
     places = roster.usable if roster.refusals else None
     future = client.submit(run_campaign, text, key=name, pure=False, workers=places, priority=campaign.priority)
-    client.set_metadata([name], {"graph": graph, "frames": len(campaign.chunk.job.frames)})
+    client.set_metadata(
+        [name],
+        {"graph": graph, "parts": len(campaign.chunk.parts), "unit": "file" if campaign.chunk.numbers else "frame"},
+    )
     client.publish_dataset(future, name=name)
     return name
 
@@ -124,13 +136,13 @@ class JobBoard:
         future = self._find_future(name)
         deadline = time.monotonic() + _ANSWER_SECONDS
         while future.status == "pending" and time.monotonic() < deadline:  # the scheduler answers a moment later
-            time.sleep(0.01)
+            time.sleep(_POLL_SECONDS)
         if future.status == "finished":
             return read_struct(future.result(), JobStatus)
-        facts = cast("Mapping[str, Any]", self._client.get_metadata([name], {"graph": "", "frames": 0}))
+        facts = cast("Mapping[str, Any]", self._client.get_metadata([name], {"graph": "", "parts": 0, "unit": "frame"}))
         events = cast("Sequence[tuple[float, Any]]", self._client.get_events(name))
         status = msgspec.convert(events[-1][1], JobStatus) if events else None
-        status = status or JobStatus(name, facts["graph"], "rendering", 0, facts["frames"])
+        status = status or JobStatus(name, facts["graph"], "rendering", 0, facts["parts"], unit=facts["unit"])
         status = replace(status, graph=facts["graph"])
         if future.status in ("error", "cancelled", "lost"):
             reason = str(future.exception()) if future.status == "error" else "it was cancelled"
@@ -159,12 +171,12 @@ class _EventWriter:
         self._started, self._sent_at, self._workers = time.monotonic(), 0.0, 0
         self._notes: list[str] = []
 
-    def report_progress(self, frames: Mapping[int, float], workers: int) -> None:
+    def report_progress(self, report: CampaignReport, workers: int) -> None:
         """Send a message from time to time."""
         self._workers = workers
         if time.monotonic() - self._sent_at > _REPORT_INTERVAL:
             self._sent_at = time.monotonic()
-            status = self.describe(frames, "rendering", {})
+            status = self.describe(report.seconds, "rendering", {})
             cast("Any", self._worker).log_event(self._campaign.name, msgspec.to_builtins(status))
 
     def report_note(self, sentence: str) -> None:
@@ -179,10 +191,11 @@ class _EventWriter:
             "",
             state,
             len(frames),
-            len(self._campaign.chunk.job.frames),
+            len(self._campaign.chunk.parts),
             self._workers,
             round(time.monotonic() - self._started, 3),
-            {str(frame): seconds for frame, seconds in slowest},
+            {_name_part(self._campaign.chunk, part): seconds for part, seconds in slowest},
             faults,
             tuple(self._notes),
+            "file" if self._campaign.chunk.numbers else "frame",
         )

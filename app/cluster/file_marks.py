@@ -28,14 +28,37 @@ _THREADS = 4
 """Files that are hashed side by side: a choice; one thread reads 1.5 GB a second, measured on a warm file."""
 
 
-class FileMarker:
-    """Describes the files of frames; each file is hashed once, ahead of the chunks that need it."""
+class FileHashing:
+    """Sizes and hashes of files; each is read once."""
 
-    def __init__(self, graph: Graph, inputs: Mapping[str, str], sandbox: Sandbox) -> None:
+    def __init__(self, sandbox: Sandbox) -> None:
+        self._sandbox = sandbox
+        self._marks: dict[str, FileMark | None] = {}
+
+    def mark_paths(self, paths: Sequence[str]) -> dict[str, FileMark]:
+        """The marks of files by their absolute paths. What is missing is left out."""
+        if new_paths := [path for path in dict.fromkeys(paths) if path not in self._marks]:
+            with ThreadPoolExecutor(_THREADS, thread_name_prefix="mark") as threads:
+                self._marks |= dict(zip(new_paths, threads.map(self._mark, new_paths), strict=True))
+        return {path: mark for path in paths if (mark := self._marks[path]) is not None}
+
+    def _mark(self, path: str) -> FileMark | None:
+        try:
+            return FileMark(Path(path).stat().st_size, content_hash(path, self._sandbox))
+        except (OSError, HalationError):
+            return None
+
+
+class FileMarker:
+    """Describes the files of frames, ahead of the chunks that need them. Several may share one `hashing`."""
+
+    def __init__(
+        self, graph: Graph, inputs: Mapping[str, str], sandbox: Sandbox, hashing: FileHashing | None = None
+    ) -> None:
         self._graph, self._sandbox = graph, sandbox
+        self._hashing = hashing or FileHashing(sandbox)
         self._pictures = MediaProvider(sandbox=sandbox)
         self._named_files = find_named_files(graph, self._pictures.bind(graph, inputs))
-        self._marks: dict[str, FileMark | None] = {}
         picture_paths = {path for path, _, _ in self._named_files}
         self._others = [
             os.path.abspath(path)  # noqa: PTH100 - links stay
@@ -50,11 +73,11 @@ class FileMarker:
 
     def mark_files(self, frames: Sequence[int], history: range) -> dict[str, FileMark]:
         """The files that frames read, and those of their history, by absolute path. What is missing is left out."""
-        paths = list(dict.fromkeys([*self._others, *self._list_pictures(frames, history)]))
-        if new_paths := [path for path in paths if path not in self._marks]:
-            with ThreadPoolExecutor(_THREADS, thread_name_prefix="mark") as threads:
-                self._marks |= dict(zip(new_paths, threads.map(self._mark, new_paths), strict=True))
-        return {path: mark for path in paths if (mark := self._marks[path]) is not None}
+        return self._hashing.mark_paths(self.list_files(frames, history))
+
+    def list_files(self, frames: Sequence[int], history: range) -> list[str]:
+        """The absolute paths of the files that frames read, and those of their history."""
+        return list(dict.fromkeys([*self._others, *self._list_pictures(frames, history)]))
 
     def read_contents(self) -> dict[str, str]:
         """The small files that travel with the graph, as base64 by absolute path."""
@@ -73,9 +96,3 @@ class FileMarker:
                 except HalationError:  # the render says so
                     continue
                 yield os.path.abspath(file)  # noqa: PTH100
-
-    def _mark(self, path: str) -> FileMark | None:
-        try:
-            return FileMark(Path(path).stat().st_size, content_hash(path, self._sandbox))
-        except (OSError, HalationError):
-            return None

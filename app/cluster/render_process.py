@@ -27,7 +27,7 @@ from msgspec import Struct, convert, field
 from ..renderer.jobs.render_job import RenderJob, worker_command
 from ..resources.heartbeat import Watchdog
 from ..resources.machine import available_cores, resident_memory
-from .chunk import ChunkReport, FrameChunk, StageReport
+from .chunk import ChunkReport, EntryOutcome, FrameChunk, StageReport
 
 CHECK_INTERVAL = 0.1
 """Seconds between two looks whether a chunk is still needed, and how much memory its process takes: a choice."""
@@ -102,17 +102,25 @@ class RenderProcess:
         limits = ProcessLimits(chunk.job.timeout, chunk.job.memory, memory_limit)
         seconds: dict[int, float] = {}
         kept: list[int] = []
+        entries: dict[int, EntryOutcome] = {}
 
         def note_frame(event: dict[str, Any]) -> None:
             seconds[event["frame"]] = event["seconds"]
             kept.extend([event["frame"]] * bool(event["kept"]))
+            if "entry" in event:
+                entries[event["frame"]] = convert(event["entry"], EntryOutcome)
             report_frame(event)
 
         answer = self.ask(chunk.to_json(), note_frame, is_cancelled, limits)
         faults = {int(frame): fault for frame, fault in answer.facts.get("faults", {}).items()}
+        entries |= {
+            int(number): convert(entry, EntryOutcome) for number, entry in answer.facts.get("entries", {}).items()
+        }
         costs, refusal = answer.facts.get("costs", {}), answer.facts.get("refusal", "")
         stage = convert(answer.facts["stage"], StageReport, strict=False) if "stage" in answer.facts else None
-        return ChunkReport("", seconds, tuple(kept), faults, costs, answer.death, refusal, answer.is_cancelled, stage)
+        return ChunkReport(
+            "", seconds, tuple(kept), faults, costs, answer.death, refusal, answer.is_cancelled, stage, entries
+        )
 
     def ask(
         self,
@@ -147,7 +155,10 @@ class RenderProcess:
                 continue
             if answer_line is None:
                 return ProcessAnswer(death=self._describe_end())
-            event: dict[str, Any] = json.loads(answer_line)
+            try:
+                event: dict[str, Any] = json.loads(answer_line)
+            except ValueError:  # the report of an error that ends the process
+                continue
             if "frame" not in event:
                 return ProcessAnswer(event)
             note_frame(event)

@@ -34,6 +34,8 @@ class StagedAssignments:
         self._next = first
         """The frame that the history has come to."""
         self._is_history_busy, self._is_checked = False, not checks
+        self._careful_until = first - 1
+        """Up to here the history is rendered frame by frame, to find the one that ends its process."""
         self._has_ahead, self._ahead_done = False, set[int]()
         self._ahead_first = self._ahead_next = first
         self._memories: dict[int, tuple[StoredMemory, ...]] = {}
@@ -71,11 +73,14 @@ class StagedAssignments:
         """Try work again whose process ended, and return the frames that have ended too many processes."""
         attempts, tried, stage = before.attempts + 1, before.tried | {worker}, before.stage
         kind = stage.kind if stage else "frames"
+        if kind == "history" and len(before.frames) > 1:
+            self._careful_until, self._is_history_busy = before.frames[-1], False
+            return ()
         if kind != "frames":
             if attempts < MAX_ATTEMPTS:
                 self.put_back(replace(before, attempts=attempts, tried=tried))
                 return ()
-            return self.give_up_stage(before, before.frames[0])
+            return self.give_up_stage(before, min(before.frames))
         if len(frames) == 1 and attempts >= MAX_ATTEMPTS:
             return tuple(frames)
         for assignment in split_suspects(frames, before, worker):
@@ -158,6 +163,7 @@ class StagedAssignments:
             return None
         is_survey = self._next == self._first
         count = _SURVEY_FRAMES if is_survey else count_chunk(self._costs.get("history", 0.0))
+        count = 1 if self._next <= self._careful_until else count
         frames, horizon = list[int](), min(self._unfinished, default=self._next) + self._window
         for frame in self._history[self._next - self._first :][:count]:
             if frame >= horizon or (self._has_ahead and frame >= self._ahead_first and frame not in self._ahead_done):

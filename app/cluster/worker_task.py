@@ -70,12 +70,12 @@ def read_memory_limit(worker: Worker) -> int:
     return limit if limit < machine_memory() else 0
 
 
-def choose_memory(wanted: int, limit: int) -> int:
+def choose_memory(memory: int, limit: int) -> int:
     """The bytes that a frame may take on a worker with a limit; 0 for any number."""
     if not limit:
-        return wanted
+        return memory
     share = max(limit - _OWN_MEMORY, limit // 4)
-    return min(wanted or share, share)
+    return min(memory or share, share)
 
 
 @cache

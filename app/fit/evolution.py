@@ -5,8 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from ..media.comparison.metrics import Array
-from .least_squares import load_fit_library
+from .libraries import load_fit_library
 from .search import FitSearch
+
+_LEAST_GAIN, _LEAST_ERROR = 1e-4, 1e-3
+"""The search ends where generations differ by less than this part of the first error, or of an error that nobody sees.
+Chosen by judgement."""
+
+_WORTHWHILE = 0.9
+"""What the error must fall to within `_PATIENCE` generations, or the search ends: a tenth less. Chosen by judgement."""
 
 _WIDTH = 0.2
 """The standard deviation of the first points, in ranges: Hansen advises a third to a fifth of the range."""
@@ -39,12 +46,12 @@ def evolve(search: FitSearch, start: Array) -> None:
         "seed": 1,
         "verbose": -9,
         "minstd": steps,
-        "tolfun": 1e-4 * max(search.best_error, 1e-3),
+        "tolfun": _LEAST_GAIN * max(search.best_error, _LEAST_ERROR),
         "tolx": _SMALLEST,
     }
     strategy = load_fit_library("cma").CMAEvolutionStrategy(search.best_point, _WIDTH, options)
     errors = [search.best_error]
-    while not strategy.stop() and (len(errors) <= _PATIENCE or errors[-1] < 0.9 * errors[-_PATIENCE]):
+    while not strategy.stop() and (len(errors) <= _PATIENCE or errors[-1] < _WORTHWHILE * errors[-_PATIENCE]):
         points = strategy.ask()
         strategy.tell(points, [float(np.linalg.norm(search.measure(np.asarray(point)))) for point in points])
         errors.append(search.best_error)

@@ -19,11 +19,19 @@ from .search import BudgetSpent, FitMeter, FitSearch
 from .search_space import SearchSpace
 from .shown_output import ShownOutput
 
+_ROUGHER = 10.0
+"""How much earlier the descent at full size ends than the one by the proxy, which has found the place already: each
+step takes a render for each value. Chosen by judgement: with half and twice as much a blur and an exposure are found
+with the same 29 renders."""
+
+_SAME_ASPECT = 0.02
+"""How much the aspect of the reference may differ: sides of a small picture are rounded to whole pixels, 1 of 50."""
+
 Comparison = Literal["pixels", "look"]
 
 _PROXY = 192
 """The longer side of a proxy in pixels. Chosen by judgement: wide blurs and grain can still be told apart, and a
-frame of 1920x1080 is 100 times as large."""
+frame of 1920x1080 is 100 times as large. With half and twice as much a blur and an exposure are found too."""
 
 _LARGEST_PROXY = 0.7
 """The scale from which on a proxy is not worth its own search."""
@@ -93,7 +101,7 @@ def _search(task: FitTask, meter: FitMeter, full: FitSearch, shrink: float) -> A
     if proxy is not full:
         full.measure(proxy.best_point, is_last=True)
         if not meter.is_spent:
-            _run(meter, lambda: descend(full, proxy.best_point, 10.0 * _TOLERANCE))
+            _run(meter, lambda: descend(full, proxy.best_point, _ROUGHER * _TOLERANCE))
     proxy.share = 1.0
     with suppress(BudgetSpent):
         return proxy.measure_central_slopes(full.best_point)
@@ -131,7 +139,7 @@ def _find_full_scale(picture: Array, task: FitTask) -> float:
     (height, width), (wanted_height, wanted_width) = picture.shape[:2], task.reference.shape[:2]
     if task.comparison == "look":
         return min(1.0, sqrt(wanted_height * wanted_width / (height * width)))
-    if abs(wanted_width / wanted_height * height / width - 1.0) > 0.02:
+    if abs(wanted_width / wanted_height * height / width - 1.0) > _SAME_ASPECT:
         raise UsageError(
             f"the reference is {wanted_width}x{wanted_height}, and the picture {width}x{height}: to compare pixel by "
             "pixel both must show the same frame; for the look of another picture add --by look"

@@ -2,40 +2,20 @@
 
 from __future__ import annotations
 
-import warnings
-from typing import Any
-
 import numpy as np
 
-from ..errors import UsageError
 from ..media.comparison.metrics import Array
+from .libraries import load_fit_library
 from .search import FitSearch
 
-HOW_TO_INSTALL = "fitting needs scipy and cma: run pip install 'halation[fit]'"
+_LEAST_STEP = 1e-5
+"""A step that is shorter, as a part of the sliders, ends the descent: five digits of a range are all that is kept."""
+
+_LEAST_SLOPE = 1e-12
+"""A slope below this ends it, which is 0 but for rounding: in flat places `ftol` decides."""
 
 _INSIDE = 0.02
 """How far inside of the ranges the first point lies: the method moves a number slowly away from an end."""
-
-
-def load_fit_library(name: str) -> Any:
-    """A library of the extra `fit`. Raises UsageError where it is not installed."""
-    try:
-        if name == "cma":
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # it says that it cannot draw diagrams
-                import cma
-
-            return cma
-        from scipy import optimize
-    except ImportError:
-        raise UsageError(HOW_TO_INSTALL) from None
-    return optimize
-
-
-def check_fit_libraries() -> None:
-    """Raise UsageError where a library of the extra `fit` is not installed."""
-    load_fit_library("scipy")
-    load_fit_library("cma")
 
 
 def descend(search: FitSearch, start: Array, tolerance: float) -> None:
@@ -60,6 +40,6 @@ def descend(search: FitSearch, start: Array, tolerance: float) -> None:
         lambda part: search.measure_slopes(fill(part), free),
         (0.0, 1.0),
         ftol=tolerance,
-        xtol=1e-5,
-        gtol=1e-12,
+        xtol=_LEAST_STEP,
+        gtol=_LEAST_SLOPE,
     )

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from halation.nodes import Plain
 
 from ..graph import Graph
 from ..media.comparison.color_difference import delta_e_2000, to_lab
 from ..media.comparison.metrics import Array
 from .search import FitMeter
 from .search_space import SearchSpace
+
+_DEPENDENT = 1e-9
+"""Columns whose singular values are below this part of the largest are mixtures of others: slopes are differences of
+pictures in floats of 32 bits, so that no digit of them is left there."""
 
 _DETERMINED = 0.02
 """The share of its range to which a number is to be known."""
@@ -39,13 +45,16 @@ class FittedValue:
 
 @dataclass(frozen=True)
 class FitResult:
-    """The fitted graph, its numbers, and the pictures [h, w, 3] before, after and wanted, as light.
+    """The fitted graph, its settings by path, its numbers, and the pictures before, after and wanted.
+
+    Pictures are light, [h, w, 3].
 
     Errors are root mean squares of CIE94 differences for pixels, and of several measures for a look. `delta_e` are
     means of CIEDE2000 before and after, None for a look. `stopped` says what ended the search early, or "".
     """
 
     graph: Graph
+    settings: Mapping[str, Plain]
     values: tuple[FittedValue, ...]
     errors: tuple[float, float]
     delta_e: tuple[float, float] | None
@@ -69,10 +78,11 @@ def describe_result(
     """The result at a point of the search space. `pictures` are those before and after, and the reference."""
     before, after, reference = pictures
     delta_e = (_mean_delta_e(before, reference), _mean_delta_e(after, reference)) if is_paired else None
-    graph = space.graph if np.array_equal(point, space.start) else space.graph_at(point)
+    settings = {} if np.array_equal(point, space.start) else space.settings_at(point)
+    graph = space.graph_at(point) if settings else space.graph
     values = _describe_values(space, point, slopes)
     return FitResult(
-        graph, values, errors, delta_e, before, after, reference, meter.count, meter.elapsed, meter.ended_by
+        graph, settings, values, errors, delta_e, before, after, reference, meter.count, meter.elapsed, meter.ended_by
     )
 
 
@@ -86,7 +96,7 @@ def measure_curvatures(slopes: Array) -> Array:
     lengths = np.zeros(slopes.shape[1])
     for place, column in enumerate(triangle.T):
         others = np.delete(triangle, place, axis=1)
-        rest = column - others @ np.linalg.lstsq(others, column, rcond=1e-9)[0] if others.size else column
+        rest = column - others @ np.linalg.lstsq(others, column, rcond=_DEPENDENT)[0] if others.size else column
         lengths[place] = float(np.linalg.norm(rest))
     return lengths
 

@@ -38,6 +38,8 @@ class FitMeter:
     count: int = 0
     error: float = float("inf")
     """The error of the best point of the search that runs."""
+    best: Array | None = None
+    """That point, None before anything was rendered."""
     ended_by: str = ""
     """What ended the search early, or ""."""
 
@@ -108,7 +110,7 @@ class FitSearch:
         error = float(np.linalg.norm(differences))
         if error < self.best_error:
             self.best_error, self.best_point = error, np.array(point)
-        self._meter.error = self.best_error
+        self._meter.error, self._meter.best = self.best_error, self.best_point
         self._meter.report(self._meter)
         return differences
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from fnmatch import fnmatchcase
 from math import floor, isfinite, log10
 
 import numpy as np
@@ -13,29 +12,15 @@ from msgspec import Struct, structs
 from ..errors import UsageError
 from ..graph import Graph, Group, Port, Unknown, did_you_mean, find_declaration, list_sockets, signature
 from ..media.comparison.metrics import Array
+from .value_patterns import ValuePattern
+
+_DIGITS = 5
+"""Digits of a range that are kept: of a slider as wide as a screen, a hundredth of a pixel."""
 
 _CHANNELS = ("red", "green", "blue")
 _FITTED_TYPES = ("float", "int", "color", "vector", "matrix", "curve")
 _LONGEST = 400
 """Numbers that are fitted together. Chosen by judgement: each costs a render per step, and memory for its gradient."""
-
-
-class ValuePattern(Struct, frozen=True):
-    """Values that may change, such as `grade.*`, and the range of their numbers; by default their own ranges."""
-
-    text: str
-    low: float | None = None
-    high: float | None = None
-
-    @property
-    def is_exact(self) -> bool:
-        """True for the name of one value."""
-        return not any(sign in self.text for sign in "*?[")
-
-    def matches(self, name: str) -> bool:
-        """True for a name with as many parts, each of which fits."""
-        parts, wanted = name.split("."), self.text.split(".")
-        return len(parts) == len(wanted) and all(map(fnmatchcase, parts, wanted))
 
 
 class FittedNumber(Struct, frozen=True):
@@ -59,8 +44,8 @@ class FittedNumber(Struct, frozen=True):
         return float(round(number)) if self.is_whole else min(max(number, self.low), self.high)
 
     def round(self, fraction: float) -> float:
-        """The nearest fraction whose number has five digits of the range: more no picture shows."""
-        digits = 5 - floor(log10(self.high - self.low))
+        """The nearest fraction whose number has `_DIGITS` digits of the range."""
+        digits = _DIGITS - floor(log10(self.high - self.low))
         number = min(max(round(self.at(fraction), digits), self.low), self.high)
         return (number - self.low) / (self.high - self.low)
 
@@ -86,21 +71,25 @@ class SearchSpace(Struct, frozen=True):
         pairs = zip(self.numbers, point, self.start, strict=True)
         return np.array([start if part == start else item.round(float(part)) for item, part, start in pairs])
 
-    def graph_at(self, point: Array) -> Graph:
-        """The graph with the numbers of a point."""
-        settings: dict[str, list[float] | float] = {}
+    def settings_at(self, point: Array) -> dict[str, Plain]:
+        """The values that a point sets, by the paths that `Graph.override` takes: numbers, and whole lists."""
+        lists: dict[str, list[float]] = {}
+        settings: dict[str, Plain] = {}
         for item, fraction in zip(self.numbers, point, strict=True):
             number = item.at(float(fraction))
             if not item.places:
                 settings[item.path] = int(number) if item.is_whole else number
                 continue
-            parts = settings.setdefault(item.path, list(_read_list(self.graph, item.path)))
-            assert isinstance(parts, list)
+            parts = lists.setdefault(item.path, list(_read_list(self.graph, item.path)))
             for place in item.places:
                 parts[place] = number
+        return settings | {path: tuple(parts) for path, parts in lists.items()}
+
+    def graph_at(self, point: Array) -> Graph:
+        """The graph with the numbers of a point."""
         graph = self.graph
-        for path, setting in settings.items():
-            graph = graph.override(path, tuple(setting) if isinstance(setting, list) else setting)
+        for path, setting in self.settings_at(point).items():
+            graph = graph.override(path, setting)
         return graph
 
 

@@ -24,6 +24,9 @@ from ..media.pictures.stored import read_stored_parts
 from ..renderer import FrameRenderer, Renderer, RenderRequest
 from ..resources.sandbox import Sandbox
 
+_LARGEST = 65504.0
+"""The largest half float, which stands for infinity as in passes."""
+
 
 class ShownOutput:
     """Renders one output as a file for people shows it, or as light. `is_light` says which."""
@@ -85,4 +88,4 @@ def holds_light(path: Path, sandbox: Sandbox) -> bool:
 def cover_with_alpha(light: Array, pixels: Array) -> Array:
     """Light as far as the alpha of straight `pixels` covers it, over black, as float32."""
     covered = light * np.clip(pixels[..., 3:4], 0.0, 1.0) if pixels.shape[2] == 4 else light
-    return np.nan_to_num(covered, nan=0.0, posinf=65504.0, neginf=-65504.0).astype(np.float32)
+    return np.nan_to_num(covered, nan=0.0, posinf=_LARGEST, neginf=-_LARGEST).astype(np.float32)

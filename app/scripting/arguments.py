@@ -22,6 +22,7 @@ MAX_SIDE = 131_072
 """Pixels on a side: what files may have (docs/security.md)."""
 
 _SHOWN_CHARACTERS = 60
+"""How much of an argument a message repeats."""
 
 
 def describe_object(item: object) -> str:

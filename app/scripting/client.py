@@ -14,13 +14,18 @@ from typing import IO, TYPE_CHECKING, Any, Self
 
 from ..errors import RenderError, rebuild_fault
 from ..resources.program import module_command
-from .packed_arrays import pack_array, unpack_array
+from .packed_arrays import pack_array, read_pictures, write_message
 
 if TYPE_CHECKING:
     import numpy as np
 
     from ..graph import Graph
     from ..inputs.provider import Binding
+
+
+PIPE_BYTES = 1 << 20
+"""Bytes that a pipe to a server holds, where the system can: as many as Linux allows to everybody. A picture of 480x270
+is 2.8 MB of text, and each time a pipe is full costs a change of processes."""
 
 
 class ServiceConnection:
@@ -49,8 +54,12 @@ class ServiceConnection:
         """
         files = output if isinstance(output, Mapping) else {} if output is None else {"": output}
         packed_files = {name: str(path) for name, path in files.items()}
-        reply = self.ask("render", graph, inputs, values=values, output=packed_files, **options)
-        return {name: unpack_array(name, packed) for name, packed in reply.get("pictures", {}).items()}
+        request = _make_request("render", graph, inputs, values, {"output": packed_files, **options})
+        line = self._exchange(request)
+        pictures = read_pictures(line)
+        if pictures is None:
+            _read_reply(line)  # files are written, or there is an error
+        return pictures or {}
 
     def make_thumbnail(
         self,
@@ -77,21 +86,7 @@ class ServiceConnection:
         **options: Any,
     ) -> dict[str, Any]:
         """The reply to any request: `action` is render, thumbnail, explain or check. Raises HalationError."""
-        import numpy as np
-
-        from .. import document
-
-        bindings = {
-            name: pack_array(binding.astype(np.float32, copy=False))
-            if isinstance(binding, np.ndarray)
-            else str(binding)
-            if isinstance(binding, Path)
-            else binding
-            for name, binding in (inputs or {}).items()
-        }
-        whole = str(graph) if isinstance(graph, str | Path) else json.loads(document.dumps(graph))
-        request = {"do": action, "graph": whole, "input": bindings, "set": dict(values or {})}
-        return self._exchange({**request, **{name: option for name, option in options.items() if option is not None}})
+        return _read_reply(self._exchange(_make_request(action, graph, inputs, values, options)))
 
     def close(self) -> None:
         """End the connection."""
@@ -105,11 +100,11 @@ class ServiceConnection:
     ) -> None:
         self.close()
 
-    def _exchange(self, request: Mapping[str, Any]) -> dict[str, Any]:
-        """Send a request and wait for its reply."""
+    def _exchange(self, request: Mapping[str, Any]) -> bytes:
+        """Send a request and wait for the line of its reply. Raises RenderError."""
         with self._lock:
             self._count += 1
-            line = json.dumps({"id": self._count, **request}).encode() + b"\n"
+            line = write_message({"id": self._count, **request})
             try:
                 self._requests.write(line)
                 self._requests.flush()
@@ -118,10 +113,40 @@ class ServiceConnection:
                 reply_line = b""
         if not reply_line:
             raise RenderError("the render server has ended the connection: see what it has printed")
-        reply = json.loads(reply_line)
-        if error := reply.get("error"):
-            raise rebuild_fault(error)
-        return reply
+        return reply_line
+
+
+def _make_request(
+    action: str,
+    graph: str | Path | Graph,
+    inputs: Mapping[str, Binding] | None,
+    values: Mapping[str, Any] | None,
+    options: Mapping[str, Any],
+) -> dict[str, Any]:
+    """A request without its id."""
+    import numpy as np
+
+    from .. import document
+
+    bindings = {
+        name: pack_array(binding.astype(np.float32, copy=False))
+        if isinstance(binding, np.ndarray)
+        else str(binding)
+        if isinstance(binding, Path)
+        else binding
+        for name, binding in (inputs or {}).items()
+    }
+    whole = str(graph) if isinstance(graph, str | Path) else json.loads(document.dumps(graph))
+    request = {"do": action, "graph": whole, "input": bindings, "set": dict(values or {})}
+    return {**request, **{name: option for name, option in options.items() if option is not None}}
+
+
+def _read_reply(line: bytes) -> dict[str, Any]:
+    """The reply in a line. Raises the HalationError that it holds."""
+    reply = json.loads(line)
+    if error := reply.get("error"):
+        raise rebuild_fault(error)
+    return reply
 
 
 def open_connection(path: Path | None) -> ServiceConnection:
@@ -142,6 +167,7 @@ def open_connection(path: Path | None) -> ServiceConnection:
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
+        pipesize=PIPE_BYTES,
     )
     assert process.stdin and process.stdout
     pipes = process.stdin, process.stdout

@@ -1,11 +1,17 @@
-"""Arrays of floats as JSON: what a render server and its clients send each other."""
+"""Arrays of floats as JSON: what a render server and its clients send each other.
+
+Their bytes are most of a line, so msgspec writes and reads them, as base64, in a tenth of the time of `json`.
+"""
 
 from __future__ import annotations
 
 import base64
 import binascii
-from collections.abc import Mapping
+import json
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
+
+import msgspec
 
 from ..errors import UsageError
 
@@ -13,26 +19,59 @@ if TYPE_CHECKING:
     import numpy as np
 
 
+class _PackedArray(msgspec.Struct):
+    shape: tuple[int, ...]
+    type: str
+    pixels: bytes
+
+
+class _PictureReply(msgspec.Struct):
+    pictures: dict[str, _PackedArray]
+
+
 def pack_array(array: np.ndarray) -> dict[str, Any]:
-    """An array of floats as JSON: its shape, its type, and its bytes as base64."""
+    """What `write_message` takes for an array of floats: its shape, its type, and its bytes."""
     import numpy as np
 
     contiguous = np.ascontiguousarray(array)
-    pixels = base64.b64encode(contiguous.data).decode("ascii")
-    return {"shape": list(contiguous.shape), "type": contiguous.dtype.name, "pixels": pixels}
+    return {"shape": list(contiguous.shape), "type": contiguous.dtype.name, "pixels": contiguous.tobytes()}
+
+
+def write_message(message: Mapping[str, Any]) -> bytes:
+    """A message as one line of JSON, with the bytes in it as base64."""
+    if "pictures" in message or any(isinstance(item, dict) for item in message.get("input", {}).values()):
+        try:
+            return msgspec.json.encode(message) + b"\n"
+        except UnicodeEncodeError:  # a name that is not UTF-8
+            message = msgspec.to_builtins(message)
+    return json.dumps(message, ensure_ascii=False).encode("utf-8", "surrogateescape") + b"\n"
+
+
+def read_pictures(line: bytes) -> dict[str, np.ndarray] | None:
+    """The arrays in a line with the pictures of a render, by the name of the output; None for another line."""
+    try:
+        reply = msgspec.json.decode(line, type=_PictureReply)
+    except (msgspec.DecodeError, UnicodeDecodeError):
+        return None
+    return {name: _make_array(packed.pixels, packed.type, packed.shape) for name, packed in reply.pictures.items()}
 
 
 def unpack_array(name: str, packed: Mapping[str, Any]) -> np.ndarray:
-    """The array in what `pack_array` made. Raises UsageError."""
-    import numpy as np
-
+    """The array in a part of a message that was read from JSON. Raises UsageError."""
     try:
-        if packed["type"] not in ("float16", "float32"):
-            raise ValueError(f"type {packed['type']}")
         pixels = base64.b64decode(packed["pixels"], validate=True)
-        return np.frombuffer(pixels, packed["type"]).reshape([int(side) for side in packed["shape"]])
+        return _make_array(pixels, packed["type"], [int(side) for side in packed["shape"]])
     except (KeyError, TypeError, ValueError, binascii.Error) as fault:
         raise UsageError(
             f"input '{name}': this is not an array ({fault}): write shape, type (float16 or float32) and pixels as "
             "base64, or the path of a file"
         ) from None
+
+
+def _make_array(pixels: bytes, type: str, shape: Sequence[int]) -> np.ndarray:
+    """The array with these bytes. Raises ValueError."""
+    import numpy as np
+
+    if type not in ("float16", "float32"):
+        raise ValueError(f"type {type}")
+    return np.frombuffer(pixels, type).reshape(shape)

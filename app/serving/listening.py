@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import os
 import socket
 import threading
@@ -14,6 +13,7 @@ from typing import IO, Any
 
 from ..errors import HalationError, OutputError, UsageError
 from ..resources.sandbox import Sandbox
+from ..scripting.packed_arrays import write_message
 from .request_queue import RequestQueue, ServiceClient
 from .service_requests import MAX_LINE_BYTES, describe_failure, find_request_id, parse_request
 
@@ -26,7 +26,7 @@ def serve_stream(queue: RequestQueue, requests: IO[bytes], replies: IO[bytes]) -
 
     A stream that ends says only that there are no more requests. The client has gone when replies cannot be written.
     """
-    client = ServiceClient(_make_sender(replies, lambda: queue.remove_client(client)))
+    client = ServiceClient(make_sender(make_line_writer(replies, lambda: queue.remove_client(client))))
 
     def read() -> None:
         _read_lines(queue, client, requests)
@@ -41,22 +41,22 @@ def serve_socket(queue: RequestQueue, path: Path, sandbox: Sandbox) -> Generator
 
     Only the user of this process may connect. A socket that nobody listens to any more is replaced. Raises OutputError.
     """
-    if reason := sandbox.fault(path):
+    if reason := sandbox.find_write_fault(path):
         raise OutputError(f"{path}: {reason}")
     if not hasattr(socket, "AF_UNIX"):
         raise UsageError(f"--socket {path}: this system has no local sockets: use standard input and output")
-    listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-    try:
+    with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as listener:
         _bind_socket(listener, path)
-        listener.listen()
-        places = threading.BoundedSemaphore(MAX_CLIENTS)
-        accept = threading.Thread(target=_accept_clients, args=(queue, listener, places), name="accept", daemon=True)
-        accept.start()
-        yield
-    finally:
-        listener.close()
-        with contextlib.suppress(OSError):
-            path.unlink()
+        try:  # from here on the name is that of this socket, and nobody else's
+            listener.listen()
+            places = threading.BoundedSemaphore(MAX_CLIENTS)
+            arguments = (queue, listener, places)
+            threading.Thread(target=_accept_clients, args=arguments, name="accept", daemon=True).start()
+            yield
+        finally:
+            listener.close()
+            with contextlib.suppress(OSError):
+                path.unlink()
 
 
 def _bind_socket(listener: socket.socket, path: Path) -> None:
@@ -89,7 +89,7 @@ def _accept_clients(queue: RequestQueue, listener: socket.socket, places: thread
 def _serve_client(queue: RequestQueue, connection: socket.socket, places: threading.BoundedSemaphore) -> None:
     """Read the requests of one client until it goes away, which ends its work."""
     with connection, connection.makefile("rb") as requests, connection.makefile("wb") as replies:
-        client = ServiceClient(_make_sender(replies, lambda: queue.remove_client(client)))
+        client = ServiceClient(make_sender(make_line_writer(replies, lambda: queue.remove_client(client))))
         _read_lines(queue, client, requests)
         queue.remove_client(client)
     places.release()
@@ -105,14 +105,19 @@ def _read_lines(queue: RequestQueue, client: ServiceClient, requests: IO[bytes])
         if not line:
             return
         if len(line) > MAX_LINE_BYTES:
-            fault = UsageError(f"the request has more than {MAX_LINE_BYTES // 2**20} MB: name files instead of pixels")
-            client.send({"id": None, "error": describe_failure(fault)})
+            refuse_long_line(client)
             return
         if line.strip():
-            _queue_line(queue, client, line)
+            queue_line(queue, client, line)
 
 
-def _queue_line(queue: RequestQueue, client: ServiceClient, line: bytes) -> None:
+def refuse_long_line(client: ServiceClient) -> None:
+    """Answer a line that is too long. Nothing after it is read: it may be the rest of it."""
+    fault = UsageError(f"the request has more than {MAX_LINE_BYTES // 2**20} MB: name files instead of pixels")
+    client.send({"id": None, "error": describe_failure(fault)})
+
+
+def queue_line(queue: RequestQueue, client: ServiceClient, line: bytes) -> None:
     """Let the request in a line wait for its turn; a line that is no request is answered at once."""
     try:
         request = parse_request(line)
@@ -124,17 +129,25 @@ def _queue_line(queue: RequestQueue, client: ServiceClient, line: bytes) -> None
         client.send({"id": find_request_id(line), "error": describe_failure(fault)})
 
 
-def _make_sender(replies: IO[bytes], drop_client: Callable[[], None]) -> Callable[[Mapping[str, Any]], None]:
-    """A function that writes a reply as one line, from any thread; the client has gone where that fails."""
+def make_line_writer(replies: IO[bytes], drop_client: Callable[[], None]) -> Callable[[bytes], None]:
+    """A function that writes a line, from any thread; the client has gone where that fails."""
     lock = threading.Lock()
 
-    def send(reply: Mapping[str, Any]) -> None:
-        line = json.dumps(reply, ensure_ascii=False).encode("utf-8", "surrogateescape") + b"\n"
+    def write(line: bytes) -> None:
         try:
             with lock:
                 replies.write(line)
                 replies.flush()
         except (OSError, ValueError):
             drop_client()
+
+    return write
+
+
+def make_sender(write_line: Callable[[bytes], None]) -> Callable[[Mapping[str, Any]], None]:
+    """A function that writes a reply as one line."""
+
+    def send(reply: Mapping[str, Any]) -> None:
+        write_line(write_message(reply))
 
     return send

@@ -72,11 +72,15 @@ class RequestQueue:
     def take_request(self) -> tuple[ServiceClient, ServiceRequest] | None:
         """The next request; waits for one. None if the queue is closed and empty."""
         with self._changed:
-            while True:
-                for client, waiting in self._waiting.items():
-                    if waiting:
-                        self._waiting.move_to_end(client)
-                        return client, waiting.popleft()
-                if self._is_closed:
-                    return None
+            while not (turn := self.take_waiting_request()) and not self._is_closed:
                 self._changed.wait(SIGNAL_INTERVAL)
+            return turn
+
+    def take_waiting_request(self) -> tuple[ServiceClient, ServiceRequest] | None:
+        """The next request; None if none waits."""
+        with self._changed:
+            for client, waiting in self._waiting.items():
+                if waiting:
+                    self._waiting.move_to_end(client)
+                    return client, waiting.popleft()
+            return None

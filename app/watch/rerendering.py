@@ -27,6 +27,7 @@ from .sequence_files import list_sequence_files
 from .watching import FileChange, FileWatcher, find_group_files, find_pictures
 
 _POLL_SECONDS = 0.05
+"""Seconds between two looks at what has changed: nobody notices them."""
 _CALM_SECONDS = 0.1
 """Seconds without another change after which a burst of changes is over: programs often save several files at once."""
 

@@ -10,6 +10,7 @@ from ..resources.input_files import fingerprint
 from ..resources.sandbox import Sandbox
 
 LOOK_AGAIN = 1.0
+"""Seconds after which a file is looked at again, if nothing has told of a change. Chosen by judgement."""
 
 
 class FileVersions:

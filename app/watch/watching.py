@@ -32,6 +32,13 @@ from ..media.layers import split_layer
 from ..resources.input_files import read_bytes
 from ..resources.sandbox import UNRESTRICTED, Sandbox
 
+_BURST_MILLISECONDS, _STEP_MILLISECONDS = 100, 20
+"""Changes that follow each other faster are told together, at the latest after the first number: programs write a file
+in several steps. Chosen by judgement."""
+
+_WAKE_SECONDS = 0.05
+"""How long it may take to notice that other files are wanted, where nothing wakes it."""
+
 Kind = Literal["graph", "group", "picture", "code", "shader", "node"]
 _Key = tuple[Kind, Path]
 
@@ -199,8 +206,8 @@ class FileWatcher:
             *(path for path, _ in folders),
             watch_filter=None,
             recursive=False,
-            debounce=100,
-            step=20,
+            debounce=_BURST_MILLISECONDS,
+            step=_STEP_MILLISECONDS,
             rust_timeout=int(1000 * _POLL_SECONDS),
             stop_event=self._wake,
             yield_on_timeout=True,
@@ -215,7 +222,7 @@ class FileWatcher:
     def _wait(self, seconds: float) -> None:
         end = time.monotonic() + seconds
         while not self._wake.is_set() and time.monotonic() < end:
-            self._wake.ended.wait(0.05)
+            self._wake.ended.wait(_WAKE_SECONDS)
 
     def _folders(self) -> frozenset[tuple[Path, int]]:
         """The folders to listen to, each with its number: one that was made again is another."""
@@ -321,7 +328,7 @@ def _inspect(key: _Key, before: _FileState | None, sandbox: Sandbox) -> _FileSta
 
 def _file_stamp(path: Path, sandbox: Sandbox) -> tuple[int, int, int] | None:
     """Time, size and number of a file; None if there is none that may be read."""
-    if sandbox.fault(path):
+    if sandbox.find_read_fault(path):
         return None
     try:
         status = path.stat()
