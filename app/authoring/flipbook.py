@@ -17,6 +17,7 @@ from ..errors import InputError
 from ..graph import OUTPUTS, Graph, Output, Port
 from ..graph.frames import Pattern
 from ..graph.names import fresh_name, name_fault
+from ..language.translation import translate
 from ..media.sequences import find_sequence, suggest_pattern
 from ..resources.sandbox import UNRESTRICTED, Sandbox
 from .render_queue.queue import QueuedRender
@@ -59,7 +60,7 @@ class FlipbookStrip:
         path = Path(suggest_pattern(str(path), sandbox=sandbox) or path)
         frames = _list_disk_frames(path, sandbox=sandbox)
         if not frames:
-            raise InputError(f"{path}: this picture does not exist")
+            raise InputError(translate("{path}: this picture does not exist", path=path))
         return FlipbookStrip(path, (frames[0], frames[-1]))
 
 

@@ -21,6 +21,7 @@ from ..document import save
 from ..document.about import About, read_about, with_about
 from ..errors import HalationError, OutputError, UsageError
 from ..graph import Graph
+from ..language.translation import mark, translate
 from ..media.pictures.thumbnail import save_thumbnail
 from ..resources.sandbox import UNRESTRICTED, Sandbox
 from ..resources.user_folders import own_presets_folder
@@ -49,7 +50,13 @@ class PresetFacts:
     @property
     def category(self) -> str:
         """The first tag, or where it comes from."""
-        return "my presets" if self.is_own else self.about.tags[0] if self.about.tags else "other"
+        return (
+            mark("my presets", "category")
+            if self.is_own
+            else self.about.tags[0]
+            if self.about.tags
+            else mark("other", "category")
+        )
 
 
 class PresetLibrary:
@@ -89,15 +96,15 @@ def make_preset_name(text: str) -> str:
     """
     name = re.sub(r"\s+", "_", text.strip()).lower()
     if not name:
-        raise UsageError("type a name")
+        raise UsageError(translate("type a name"))
     if len(name) > LONGEST_NAME:
-        raise UsageError(f"the name is too long: use at most {LONGEST_NAME} letters")
+        raise UsageError(translate("the name is too long: use at most {most} letters", most=LONGEST_NAME))
     if not re.fullmatch(r"[\w-]+", name) or name.startswith("-"):
-        raise UsageError("use letters, digits, spaces, - and _ only, and no - at the start")
+        raise UsageError(translate("use letters, digits, spaces, - and _ only, and no - at the start"))
     if name in _RESERVED:
-        raise UsageError(f"Windows gives the name '{name}' to a device: choose another one")
+        raise UsageError(translate("Windows gives the name '{name}' to a device: choose another one", name=name))
     if name in {path.stem for path in shipped_paths()}:
-        raise UsageError(f"'{name}' is a preset of Halation: choose another name")
+        raise UsageError(translate("'{name}' is a preset of Halation: choose another name", name=name))
     return name
 
 
@@ -116,7 +123,13 @@ def save_preset(graph: Graph, about: About, path: Path, pixels: Array | None, sa
     try:
         (path.parent / "pictures").mkdir(parents=True, exist_ok=True)
     except OSError as fault:
-        raise OutputError(f"{path.parent}: the folder cannot be made ({fault.strerror}): choose another") from None
+        raise OutputError(
+            translate(
+                "{parent}: the folder cannot be made ({reason}): choose another",
+                parent=path.parent,
+                reason=fault.strerror,
+            )
+        ) from None
     save(with_about(paths.rebase_paths(graph, str(path.parent)), about), path, sandbox=sandbox)
     if pixels is not None:
         save_thumbnail(picture(path), pixels, sandbox=sandbox)

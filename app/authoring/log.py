@@ -10,6 +10,7 @@ from time import time
 from typing import Literal, TypeVar
 
 from ..errors import HalationError
+from ..language.translation import translate
 
 T = TypeVar("T")
 Level = Literal["info", "warning", "error"]
@@ -56,8 +57,12 @@ class Log:
             self.add(str(error), "error")
         except Exception as error:
             self.add(
-                f"this did not work because of a fault in Halation ({type(error).__name__}: {error}); "
-                "the document is as it was before",
+                translate(
+                    "this did not work because of a fault in Halation ({kind}: {error}); the document is as it was "
+                    "before",
+                    kind=type(error).__name__,
+                    error=error,
+                ),
                 "error",
                 traceback.format_exc(),
             )

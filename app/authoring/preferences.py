@@ -15,6 +15,7 @@ from typing import Annotated, Any, Literal, cast, get_type_hints
 import msgspec
 
 from ..errors import OutputError, UsageError
+from ..language.translation import translate
 from ..resources.atomic_write import write_text_atomically
 from ..resources.sandbox import UNRESTRICTED
 from ..resources.user_folders import PREFERENCES, state_folder
@@ -53,8 +54,9 @@ class Recent:
 
 @dataclass(frozen=True)
 class Preferences:
-    """`ui_scale` is 0 for what the system says. `keymap` is the program whose shortcuts are used, `shortcuts` are those
-    that differ from it, by action; "" stands for none. `separate_windows` lets panels be torn off.
+    """`ui_scale` is 0 for what the system says, `language` is "" then. `keymap` is the program whose shortcuts
+    are used, `shortcuts` are those that differ from it, by action; "" stands for none. `separate_windows` lets panels
+    be torn off.
 
     `recent` has the newest first. `folders` are those used last, by purpose. `autosave` is in seconds,
     `memory_budget` in MiB. `isf_folders` hold shaders that can be added, `preset_folders` presets. `swatches` are
@@ -66,6 +68,7 @@ class Preferences:
     reduced_motion: bool = False
     separate_windows: bool = False
     ui_scale: float = 0.0
+    language: Literal["", "en", "de"] = ""
     keymap: Literal["halation", "nuke", "blender", "fusion"] = "halation"
     shortcuts: Mapping[str, str] = field(default_factory=lambda: MappingProxyType[str, str]({}))
     recent: tuple[Recent, ...] = ()
@@ -108,11 +111,18 @@ class PreferenceStore:
         checked: dict[str, Any] = {}
         for name, value in values.items():
             if name not in NAMES:
-                raise UsageError(f"there is no preference '{name}'")
+                raise UsageError(translate("there is no preference '{name}'", name=name))
             try:
                 checked[name] = _check_value(name, value)
             except FAULTS as fault:
-                raise UsageError(f"the preference '{name}' cannot be {value!r}: {_lower_first(fault)}") from None
+                raise UsageError(
+                    translate(
+                        "the preference '{name}' cannot be {value!r}: {fault}",
+                        name=name,
+                        value=value,
+                        fault=_lower_first(fault),
+                    )
+                ) from None
         self.current = replace(self.current, **checked)
 
     def note_opened(self, path: str | Path) -> None:
@@ -158,10 +168,14 @@ class PreferenceStore:
                     self.file, json.dumps(_tree(self.current), indent=2, sort_keys=True) + "\n", sandbox=UNRESTRICTED
                 )
         except OSError as fault:
-            self._report(f"preferences cannot be saved in {self.file.parent} ({fault.strerror})")
+            self._report(
+                translate(
+                    "preferences cannot be saved in {parent} ({reason})", parent=self.file.parent, reason=fault.strerror
+                )
+            )
             return False
         except OutputError as fault:
-            self._report(f"preferences cannot be saved: {fault}")
+            self._report(translate("preferences cannot be saved: {fault}", fault=fault))
             return False
         self._written = self.current
         self._forgotten.clear()
@@ -183,7 +197,9 @@ class PreferenceStore:
         except (FileNotFoundError, NotADirectoryError):
             return fallback
         except OSError as fault:
-            self._report(f"{self.file}: the preferences cannot be read ({fault.strerror})")
+            self._report(
+                translate("{file}: the preferences cannot be read ({reason})", file=self.file, reason=fault.strerror)
+            )
             return fallback
         except (ValueError, RecursionError) as fault:
             self._set_aside(fault)
@@ -194,7 +210,11 @@ class PreferenceStore:
                 if name in tree:
                     values[name] = _check_value(name, self._sound_entries(name, tree[name]))
             except FAULTS as fault:
-                self._report(f"{self.file}: '{name}' is left out ({_lower_first(fault)})")
+                self._report(
+                    translate(
+                        "{file}: '{name}' is left out ({fault})", file=self.file, name=name, fault=_lower_first(fault)
+                    )
+                )
                 values[name] = getattr(fallback, name)
         extra = {name: item for name, item in tree.items() if name not in NAMES}
         return Preferences(**values, extra=MappingProxyType(extra))
@@ -211,7 +231,14 @@ class PreferenceStore:
         try:
             _check_value(name, raw)
         except FAULTS as fault:
-            self._report(f"{self.file}: an entry of '{name}' is left out ({_lower_first(fault)})")
+            self._report(
+                translate(
+                    "{file}: an entry of '{name}' is left out ({fault})",
+                    file=self.file,
+                    name=name,
+                    fault=_lower_first(fault),
+                )
+            )
             return False
         return True
 
@@ -219,7 +246,14 @@ class PreferenceStore:
         aside = self.file.with_name("preferences.broken.json")
         with contextlib.suppress(OSError):
             self.file.replace(aside)
-        self._report(f"{self.file}: the preferences are damaged ({fault}); they are set aside as {aside.name}")
+        self._report(
+            translate(
+                "{file}: the preferences are damaged ({fault}); they are set aside as {name}",
+                file=self.file,
+                fault=fault,
+                name=aside.name,
+            )
+        )
 
     def _report(self, sentence: str) -> None:
         if sentence not in self.faults:

@@ -13,6 +13,7 @@ from pathlib import Path
 from halation.presets import picture
 
 from ..errors import InputError, OutputError
+from ..language.translation import translate
 from ..resources.atomic_write import write_bytes_atomically
 from ..resources.sandbox import Sandbox
 
@@ -41,7 +42,13 @@ def keep_version(preset: Path, sandbox: Sandbox) -> PresetVersion:
     try:
         picture(path).parent.mkdir(parents=True, exist_ok=True)
     except OSError as fault:
-        raise OutputError(f"{path.parent}: the folder cannot be made ({fault.strerror}): free the name") from None
+        raise OutputError(
+            translate(
+                "{parent}: the folder cannot be made ({reason}): free the name",
+                parent=path.parent,
+                reason=fault.strerror,
+            )
+        ) from None
     _copy(preset, path, sandbox)
     return PresetVersion(number, path, path.stat().st_mtime)
 
@@ -64,6 +71,10 @@ def _copy(source: Path, target: Path, sandbox: Sandbox) -> None:
         except FileNotFoundError:  # a preset may have no picture
             end.unlink(missing_ok=True)
         except OSError as fault:
-            raise InputError(f"{start}: the file cannot be read ({fault.strerror}): check its rights") from None
+            raise InputError(
+                translate(
+                    "{start}: the file cannot be read ({reason}): check its rights", start=start, reason=fault.strerror
+                )
+            ) from None
         else:
             write_bytes_atomically(end, content, sandbox)

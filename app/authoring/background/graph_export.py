@@ -6,10 +6,6 @@ is refused is refused with the same sentence as on the command line.
 
 from __future__ import annotations
 
-import contextlib
-import json
-import subprocess
-import threading
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -18,9 +14,9 @@ from msgspec import Struct, field
 
 from ... import document
 from ...graph import Graph
-from ...resources.program import module_command
 from ...resources.sandbox import Sandbox
 from ..edits.paths import rebase_paths
+from .command_process import CommandEnd, CommandProcess
 
 
 class ExportChoices(Struct, frozen=True):
@@ -85,44 +81,22 @@ class GraphExport:
         file = folder / f"{output.stem}.json"
         document.save(rebase_paths(graph, str(folder)), file, sandbox=sandbox)
         inputs = [f"--input={name}={path}" for name, path in bindings.items() if not choices.selection]
-        command = [*module_command("halation.cli"), "export", str(file), f"--output={output}", "--json"]
-        self._words = [*command, *choices.words, *inputs]
-        self._process: subprocess.Popen[str] | None = None
-        self._stopped, self._ended = False, threading.Event()
-        threading.Thread(target=self._run, name="graph export", daemon=True).start()
+        command = ["export", str(file), f"--output={output}", "--json", *choices.words, *inputs]
+        self._process = CommandProcess(command, self._read_end)
 
     def stop(self) -> None:
         """Ask the process to end, which leaves no unfinished file."""
-        self._stopped = True
-        if self._process is not None:
-            with contextlib.suppress(OSError):
-                self._process.terminate()
+        self._process.stop()
 
     def wait(self, seconds: float | None = None) -> bool:
         """Wait until it has ended, at most so long; False if it still runs."""
-        return self._ended.wait(seconds)
+        return self._process.wait(seconds)
 
-    def _run(self) -> None:
-        pipe = subprocess.PIPE
-        try:
-            self._process = subprocess.Popen(
-                self._words, stdin=subprocess.DEVNULL, stdout=pipe, stderr=pipe, encoding="utf-8", errors="replace"
-            )
-            if self._stopped:  # before there was a process
-                self._process.terminate()
-            output, errors = self._process.communicate()
-            self.outcome = _read_outcome(self._process.returncode, output, errors)
-        except OSError as fault:
-            self.outcome = ExportOutcome(f"the export cannot be started: {fault.strerror}")
-        self._ended.set()
-
-
-def _read_outcome(code: int, output: str, errors: str) -> ExportOutcome:
-    report: dict[str, Any] = {}
-    with contextlib.suppress(ValueError):
-        report = json.loads(output)
-    if code:
-        lines = errors.strip().splitlines() or ["it gave no reason"]
-        return ExportOutcome(str(report.get("error", {}).get("message") or lines[-1]))
-    notes = tuple(str(note) for note in report.get("notes", ()))
-    return ExportOutcome("", notes, {name: item for name, item in report.items() if name not in ("file", "notes")})
+    def _read_end(self, end: CommandEnd) -> None:
+        if end.fault:
+            self.outcome = ExportOutcome(end.fault)
+            return
+        report = end.report
+        notes = tuple(str(note) for note in report.get("notes", ()))
+        figures = {name: item for name, item in report.items() if name not in ("file", "notes")}
+        self.outcome = ExportOutcome("", notes, figures)

@@ -9,6 +9,7 @@ from types import MappingProxyType
 from halation.nodes import Matte, Render
 
 from ...errors import HalationError, InputError
+from ...language.translation import translate
 from ...render_layers.mattes import IdMap, read_id_map
 from ...render_layers.naming import Role
 from ...render_layers.overview import RenderOverview, summarize_render
@@ -47,7 +48,7 @@ class OverviewPending(InputError):
     """A render is still being read. `ready` says when it makes sense to ask again."""
 
     def __init__(self, path: str, ready: Callable[[], bool]) -> None:
-        super().__init__(f"{path}: is still being read: wait a moment")
+        super().__init__(translate("{path}: is still being read: wait a moment", path=path))
         self.ready = ready
 
 
@@ -109,7 +110,7 @@ class RenderOverviews:
         except HalationError as fault:
             return str(fault), str(fault)
         except Exception as fault:
-            message = f"{path}: cannot be read ({fault})"
+            message = translate("{path}: cannot be read ({fault})", path=path, fault=fault)
             return message, message
         try:
             return contents, read_render(path, dict(named), sandbox=self._sandbox)

@@ -26,7 +26,7 @@ from .linking import (
     ToggleCollapse,
     ToggleMute,
 )
-from .named_items import AddItem, DuplicateItem, RemoveItem, RenameItem
+from .named_items import AddItem, DuplicateItem, ExchangeItems, RemoveItem, RenameItem
 from .settings import (
     SetCanvasSize,
     SetColorSettings,
@@ -85,6 +85,7 @@ __all__ = [
     "EditFrame",
     "Edited",
     "EmbedCode",
+    "ExchangeItems",
     "ExposeValue",
     "ExtractSelection",
     "HideControl",

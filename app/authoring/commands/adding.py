@@ -12,6 +12,7 @@ from ...custom_nodes.plugins import preset_paths
 from ...document import load
 from ...errors import GraphError
 from ...graph import Group, Item, Port, did_you_mean
+from ...language.translation import translate
 from ...render_layers.render import is_render
 from ...watch.sequence_files import representative_file
 from ..edits import appending, coding, elements, layout, naming, paths, room, routes, wiring
@@ -124,7 +125,7 @@ class InsertNode(EditCommand[str]):
             graph = elements.with_places(graph, {ElementId(id): self.at or self._find_middle(document)})
         node = ElementId(id)
         graph = room.make_space(wiring.insert_node(graph, id, self.target), (node,), self.target, self.sizes)
-        return Edited(f"Insert {id}", id, graph, (node,))
+        return Edited(translate("Insert {id}", id=id), id, graph, (node,))
 
     def _find_middle(self, document: OpenDocument) -> Place:
         """Halfway between the ends of the link."""
@@ -154,7 +155,9 @@ class SpliceChain(EditCommand[None]):
         moved = {key: (x + self.by[0], y + self.by[1]) for key, (x, y) in places.items()}
         graph = wiring.splice_chain(elements.with_places(graph, moved), ids, self.target)
         graph = room.make_space(graph, ids, self.target, self.sizes)
-        return Edited(f"Insert {naming.describe_elements(ids)}", None, graph, merge=self.merge)
+        return Edited(
+            translate("Insert {elements}", elements=naming.describe_elements(ids)), None, graph, merge=self.merge
+        )
 
 
 @dataclass(frozen=True)
@@ -171,7 +174,7 @@ class DropFiles(EditCommand[tuple[str, ...]]):
     def apply(self, document: OpenDocument) -> Edited[tuple[str, ...]]:
         graph, ids = document.graph, list[str]()
         if not self.paths:
-            return Edited("Drop files", ())
+            return Edited(translate("Drop files"), ())
         x, y = self.at
         for path in self.paths:
             id = graph.fresh_id(naming.node_stem(path))
@@ -184,7 +187,7 @@ class DropFiles(EditCommand[tuple[str, ...]]):
             y += sizes[node][1] + layout.GAP[1]
             ids.append(id)
         label = naming.node_stem(self.paths[0]) if len(ids) == 1 else f"{len(ids)} files"
-        return Edited(f"Drop {label}", tuple(ids), graph, map(ElementId, ids))
+        return Edited(translate("Drop {label}", label=label), tuple(ids), graph, map(ElementId, ids))
 
 
 def make_node(document: OpenDocument, type_id: str) -> Node:
@@ -192,7 +195,13 @@ def make_node(document: OpenDocument, type_id: str) -> Node:
     if type_id == coding.CODE:
         return coding.make_starter_node()
     if type_id not in document.types:
-        raise GraphError(f"there is no node type '{type_id}'{did_you_mean(type_id, document.types)}")
+        raise GraphError(
+            translate(
+                "there is no node type '{type_id}'{suggestion}",
+                type_id=type_id,
+                suggestion=did_you_mean(type_id, document.types),
+            )
+        )
     return document.types[type_id]()
 
 
@@ -207,7 +216,7 @@ def add_item(document: OpenDocument, stem: str, item: Item, at: Place, link: Por
     graph = elements.with_places(document.graph.add(id, item), {ElementId(id): at})
     if link is not None:
         graph = wiring.link_node(graph, id, link, output)
-    return Edited(f"Add {id}", id, graph, (ElementId(id),))
+    return Edited(translate("Add {id}", id=id), id, graph, (ElementId(id),))
 
 
 def load_group(document: OpenDocument, path: str | Path) -> Group:
@@ -219,7 +228,9 @@ def load_group(document: OpenDocument, path: str | Path) -> Group:
     body = load(path, document.types, sandbox=document.sandbox)
     own_path = document.path.resolve() if document.path else None
     if own_path in {Path(path).resolve(), *(file.resolve() for file in paths.group_files(body))}:
-        raise GraphError(f"a group cannot hold itself: '{Path(path).name}' is this document or holds it")
+        raise GraphError(
+            translate("a group cannot hold itself: '{name}' is this document or holds it", name=Path(path).name)
+        )
     if Path(path).resolve() in {preset.resolve() for preset in preset_paths()}:
         return Group(paths.rebase_paths(without_samples(body), document.root.folder))
     return Group(body, paths.make_relative(path, document.root.folder))

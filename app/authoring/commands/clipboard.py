@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ...language.translation import translate
 from ..edits import clipboard, deleting, naming
 from ..edits.clipboard import copy_elements
 from ..edits.element_id import ElementId
@@ -19,7 +20,9 @@ class CutSelection(EditCommand[str]):
     def apply(self, document: OpenDocument) -> Edited[str]:
         text = copy_elements(document.graph, document.selection)
         graph = deleting.delete_elements(document.graph, document.selection)
-        return Edited(f"Cut {naming.describe_elements(document.selection)}", text, graph, ())
+        return Edited(
+            translate("Cut {elements}", elements=naming.describe_elements(document.selection)), text, graph, ()
+        )
 
 
 @dataclass(frozen=True)
@@ -37,7 +40,7 @@ class PasteText(EditCommand[tuple[ElementId, ...]]):
     def apply(self, document: OpenDocument) -> Edited[tuple[ElementId, ...]]:
         part = clipboard.read_part(self.text, document.root.folder, document.types, sandbox=document.sandbox)
         graph, keys = clipboard.paste_part(document.graph, part, document.positions, self.at, self.keep_links)
-        return Edited(f"Paste {naming.describe_elements(keys)}", keys, graph, keys)
+        return Edited(translate("Paste {elements}", elements=naming.describe_elements(keys)), keys, graph, keys)
 
 
 @dataclass(frozen=True)
@@ -47,8 +50,12 @@ class DuplicateSelection(EditCommand[tuple[ElementId, ...]]):
     offset: Place = (24.0, 24.0)
 
     def apply(self, document: OpenDocument) -> Edited[tuple[ElementId, ...]]:
-        part = clipboard.cut_part(document.graph, require_selection(document, "duplicate"))
+        part = clipboard.cut_part(
+            document.graph, require_selection(document, translate("nothing is selected: select what to duplicate"))
+        )
         graph, keys = clipboard.paste_part(
             document.graph, part, document.positions, keep_links=True, offset=self.offset
         )
-        return Edited(f"Duplicate {naming.describe_elements(document.selection)}", keys, graph, keys)
+        return Edited(
+            translate("Duplicate {elements}", elements=naming.describe_elements(document.selection)), keys, graph, keys
+        )

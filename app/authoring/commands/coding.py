@@ -9,6 +9,7 @@ from msgspec import structs
 
 from ...custom_nodes import Code
 from ...errors import GraphError
+from ...language.translation import translate
 from ..edits import coding, folding, paths
 from ..state.open_document import OpenDocument
 from .command import EditCommand, Edited
@@ -32,8 +33,8 @@ class SetCode(EditCommand[None]):
         graph = folding.body_at(root, document.place)
         code = coding.read_node_code(graph.nodes.get(self.id), graph.folder, sandbox=document.sandbox)
         if code is None:
-            raise GraphError(f"node '{self.id}' is not made of code")
-        label = f"Edit code of {self.id}"
+            raise GraphError(translate("node '{id}' is not made of code", id=self.id))
+        label = translate("Edit code of {id}", id=self.id)
         if not code.file:
             edited = coding.set_code(graph, self.id, structs.replace(code, text=self.text))
             return Edited(label, None, edited, merge=self.merge)
@@ -53,7 +54,7 @@ class EmbedCode(EditCommand[None]):
     def apply(self, document: OpenDocument) -> Edited[None]:
         code = read_linked_code(document, self.id)
         graph = coding.set_code(document.graph, self.id, structs.replace(code, file=""))
-        return Edited(f"Move code of {self.id} into the graph", None, graph)
+        return Edited(translate("Move code of {id} into the graph", id=self.id), None, graph)
 
 
 @dataclass(frozen=True)
@@ -66,16 +67,16 @@ class LinkCodeFile(EditCommand[None]):
     def apply(self, document: OpenDocument) -> Edited[None]:
         code = coding.read_node_code(document.graph.nodes.get(self.id), document.graph.folder, sandbox=document.sandbox)
         if code is None:
-            raise GraphError(f"node '{self.id}' is not made of code")
+            raise GraphError(translate("node '{id}' is not made of code", id=self.id))
         document.check_editable()
         name = paths.make_relative(self.path, document.graph.folder)
         graph = coding.set_code(document.graph, self.id, structs.replace(code, file=name))
-        return Edited(f"Move code of {self.id} to {Path(self.path).name}", None, graph)
+        return Edited(translate("Move code of {id} to {name}", id=self.id, name=Path(self.path).name), None, graph)
 
 
 def read_linked_code(document: OpenDocument, id: str) -> Code:
     """The code of a node of the current graph whose code is in a file. Raises GraphError for other nodes."""
     code = coding.read_node_code(document.graph.nodes.get(id), document.graph.folder, sandbox=document.sandbox)
     if code is None or not code.file:
-        raise GraphError(f"the code of node '{id}' is in no file: move it to one first")
+        raise GraphError(translate("the code of node '{id}' is in no file: move it to one first", id=id))
     return code

@@ -19,6 +19,7 @@ from typing import Generic, TypeVar
 
 from ...errors import GraphError
 from ...graph import Graph, Port
+from ...language.translation import translate_plural
 from ..edits.element_id import ElementId
 from ..edits.folding import Moves
 from ..state.open_document import OpenDocument
@@ -56,21 +57,21 @@ class EditCommand(ABC, Generic[T]):
         """The document after the command. Raises HalationError with one sentence if the command is invalid."""
 
 
-def require_selection(document: OpenDocument, verb: str) -> frozenset[ElementId]:
-    """The selected elements. Raises GraphError if there are none."""
+def require_selection(document: OpenDocument, fault: str) -> frozenset[ElementId]:
+    """The selected elements. Raises GraphError with that sentence if there are none."""
     if not document.selection:
-        raise GraphError(f"nothing is selected: select what to {verb}")
+        raise GraphError(fault)
     return document.selection
 
 
-def require_nodes(document: OpenDocument, verb: str) -> tuple[ElementId, ...]:
-    """The selected nodes, in the order of the graph. Raises GraphError if there are none."""
+def require_nodes(document: OpenDocument, fault: str) -> tuple[ElementId, ...]:
+    """The selected nodes, in the order of the graph. Raises GraphError with that sentence if there are none."""
     nodes = tuple(id for id in map(ElementId, document.graph.nodes) if id in document.selection)
     if not nodes:
-        raise GraphError(f"no node is selected: select what to {verb}")
+        raise GraphError(fault)
     return nodes
 
 
 def count_links(targets: Collection[Port]) -> str:
     """The number of links, for the label of a step: `1 link`, `3 links`."""
-    return f"{len(set(targets))} {'link' if len(set(targets)) == 1 else 'links'}"
+    return translate_plural("{count} link", "{count} links", len(set(targets)))

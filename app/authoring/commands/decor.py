@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from ...errors import GraphError
 from ...graph import Port
+from ...language.translation import translate
 from ..edits import decor, naming, routes
 from ..edits.element_id import ElementId
 from ..edits.elements import Place, Sizes, clean_text, list_decor
@@ -25,7 +26,11 @@ class AddFrame(EditCommand[ElementId]):
         around = () if self.at is not None else document.selection
         at = self.at or (0.0, 0.0)
         graph, frame = decor.add_frame(document.graph, around, document.positions, self.title, at, self.sizes)
-        label = f"Frame {self.title or naming.describe_elements(around)}" if around else "Add frame"
+        label = (
+            translate("Frame {title}", title=self.title or naming.describe_elements(around))
+            if around
+            else translate("Add frame")
+        )
         return Edited(label, frame, graph, (frame,))
 
 
@@ -45,7 +50,7 @@ class EditFrame(EditCommand[None]):
         if self.color is not None:
             facts["color"] = tuple(round(float(part), 4) for part in self.color)
         graph = decor.set_facts(document.graph, self.frame, **facts)
-        return Edited("Edit frame", None, graph, merge=self.merge)
+        return Edited(translate("Edit frame"), None, graph, merge=self.merge)
 
 
 @dataclass(frozen=True)
@@ -63,7 +68,7 @@ class ResizeFrame(EditCommand[None]):
         graph = decor.set_box(
             decor.set_facts(document.graph, self.frame), self.frame, self.x, self.y, self.width, self.height
         )
-        return Edited("Resize frame", None, graph, merge=self.merge)
+        return Edited(translate("Resize frame"), None, graph, merge=self.merge)
 
 
 @dataclass(frozen=True)
@@ -75,7 +80,7 @@ class AddComment(EditCommand[ElementId]):
 
     def apply(self, document: OpenDocument) -> Edited[ElementId]:
         graph, comment = decor.add_comment(document.graph, self.at, self.text)
-        return Edited("Add comment", comment, graph, (comment,))
+        return Edited(translate("Add comment"), comment, graph, (comment,))
 
 
 @dataclass(frozen=True)
@@ -88,7 +93,7 @@ class EditComment(EditCommand[None]):
 
     def apply(self, document: OpenDocument) -> Edited[None]:
         graph = decor.set_facts(document.graph, self.comment, text=clean_text(self.text))
-        return Edited("Edit comment", None, graph, merge=self.merge)
+        return Edited(translate("Edit comment"), None, graph, merge=self.merge)
 
 
 @dataclass(frozen=True)
@@ -105,7 +110,7 @@ class ResizeComment(EditCommand[None]):
         graph = decor.set_box(
             decor.set_facts(document.graph, self.comment), self.comment, self.x, self.y, self.width, 0.0
         )
-        return Edited("Resize comment", None, graph, merge=self.merge)
+        return Edited(translate("Resize comment"), None, graph, merge=self.merge)
 
 
 @dataclass(frozen=True)
@@ -117,7 +122,7 @@ class AddDot(EditCommand[ElementId]):
 
     def apply(self, document: OpenDocument) -> Edited[ElementId]:
         graph, dot = routes.add_dot(document.graph, self.target, self.at)
-        return Edited("Add dot", dot, graph, (dot,))
+        return Edited(translate("Add dot"), dot, graph, (dot,))
 
 
 @dataclass(frozen=True)
@@ -128,7 +133,7 @@ class JoinDot(EditCommand[None]):
     target: Port
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        return Edited("Join dot", None, routes.join_dot(document.graph, self.dot, self.target))
+        return Edited(translate("Join dot"), None, routes.join_dot(document.graph, self.dot, self.target))
 
 
 @dataclass(frozen=True)
@@ -139,5 +144,5 @@ class RemoveDot(EditCommand[None]):
 
     def apply(self, document: OpenDocument) -> Edited[None]:
         if self.dot not in list_decor(document.graph, "dot"):
-            raise GraphError(f"there is no dot '{self.dot.name}'")
-        return Edited("Remove dot", None, routes.remove_dots(document.graph, [self.dot]))
+            raise GraphError(translate("there is no dot '{name}'", name=self.dot.name))
+        return Edited(translate("Remove dot"), None, routes.remove_dots(document.graph, [self.dot]))

@@ -9,6 +9,7 @@ from halation.nodes import Kind, Missing, Plain
 
 from ...errors import GraphError
 from ...graph import INPUTS, Graph, Input, Output, Port, problems
+from ...language.translation import translate
 from ..edits.element_id import ElementId
 from ..edits.elements import Place, clean_text, with_places
 from ..edits.selection import order_selection
@@ -60,7 +61,7 @@ class RemoveEnd(EditCommand[None]):
     def apply(self, document: OpenDocument) -> Edited[None]:
         port, graph = _find_port(document.graph, self.end), document.graph
         remove = graph.remove_input if port.node == INPUTS else graph.remove_output
-        return Edited(f"Remove {self.end}", None, remove(port.socket))
+        return Edited(translate("Remove {end}", end=self.end), None, remove(port.socket))
 
 
 @dataclass(frozen=True)
@@ -77,7 +78,7 @@ class RenameEnd(EditCommand[None]):
         new_end = ElementId.of_port(new_port)
         selected = order_selection(document.selection, document.active)
         selection = [new_end if element == self.end else element for element in selected]
-        label = f"Rename {self.end} to {self.new}"
+        label = translate("Rename {end} to {new}", end=self.end, new=self.new)
         return Edited(label, None, graph, selection, moves={port: new_port}, renamed=(self.end, new_end))
 
 
@@ -97,7 +98,7 @@ class SetInput(EditCommand[None]):
     def apply(self, document: OpenDocument) -> Edited[None]:
         graph = document.graph
         if self.name not in graph.inputs:
-            raise GraphError(f"the graph has no input '{self.name}'")
+            raise GraphError(translate("the graph has no input '{name}'", name=self.name))
         facts = _clean_set_texts(
             file=self.file, layer=self.layer, doc=self.doc, missing=self.missing, color_space=self.color_space
         )
@@ -106,7 +107,7 @@ class SetInput(EditCommand[None]):
         changed = replace(graph.inputs[self.name], **facts)
         graph = replace(graph, inputs={**graph.inputs, self.name: changed})
         _check_default(graph, self.name)
-        return Edited(f"Set inputs.{self.name}", None, graph, merge=self.merge)
+        return Edited(translate("Set inputs.{name}", name=self.name), None, graph, merge=self.merge)
 
 
 @dataclass(frozen=True)
@@ -122,23 +123,23 @@ class SetOutput(EditCommand[None]):
     def apply(self, document: OpenDocument) -> Edited[None]:
         graph = document.graph
         if self.name not in graph.outputs:
-            raise GraphError(f"the graph has no output '{self.name}'")
+            raise GraphError(translate("the graph has no output '{name}'", name=self.name))
         end = graph.outputs[self.name]
         overscan = end.overscan if self.overscan is None else self.overscan
         changed = replace(end, overscan=overscan, **_clean_set_texts(layer=self.layer, view=self.view))
         graph = replace(graph, outputs={**graph.outputs, self.name: changed})
-        return Edited(f"Set outputs.{self.name}", None, graph, merge=self.merge)
+        return Edited(translate("Set outputs.{name}", name=self.name), None, graph, merge=self.merge)
 
 
 def _add_end(graph: Graph, end: ElementId, at: Place | None) -> Edited[ElementId]:
-    return Edited(f"Add {end}", end, with_places(graph, {end: at}) if at else graph, (end,))
+    return Edited(translate("Add {end}", end=end), end, with_places(graph, {end: at}) if at else graph, (end,))
 
 
 def _find_port(graph: Graph, end: ElementId) -> Port:
     """The port of an input or output. Raises GraphError if the graph has none of that name."""
     port = end.port
     if port is None or port.socket not in (graph.inputs if port.node == INPUTS else graph.outputs):
-        raise GraphError(f"the graph has no '{end}'")
+        raise GraphError(translate("the graph has no '{end}'", end=end))
     return port
 
 
@@ -152,4 +153,4 @@ def _check_default(graph: Graph, name: str) -> None:
         if problem.node == INPUTS:
             raise GraphError(problem.sentence)
     if isinstance(graph.inputs[name].default, str | bool):
-        raise GraphError(f"input '{name}': the default is a number, or one per channel")
+        raise GraphError(translate("input '{name}': the default is a number, or one per channel", name=name))

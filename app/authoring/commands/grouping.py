@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ...errors import GraphError
 from ...graph import Graph, Group
+from ...language.translation import translate
 from ..edits import folding, grouping, naming, paths, ungrouping
 from ..edits.element_id import ElementId
 from ..state.open_document import OpenDocument
@@ -21,7 +22,12 @@ class MakeGroup(EditCommand[str]):
 
     def apply(self, document: OpenDocument) -> Edited[str]:
         graph, id = grouping.make_group(document.graph, document.selection, self.name)
-        return Edited(f"Group {naming.describe_elements(document.selection)}", id, graph, (ElementId(id),))
+        return Edited(
+            translate("Group {elements}", elements=naming.describe_elements(document.selection)),
+            id,
+            graph,
+            (ElementId(id),),
+        )
 
 
 @dataclass(frozen=True)
@@ -32,7 +38,7 @@ class Ungroup(EditCommand[None]):
 
     def apply(self, document: OpenDocument) -> Edited[None]:
         graph, keys = ungrouping.ungroup(document.graph, self.id)
-        return Edited(f"Ungroup {self.id}", None, graph, keys)
+        return Edited(translate("Ungroup {id}", id=self.id), None, graph, keys)
 
 
 @dataclass(frozen=True)
@@ -44,9 +50,9 @@ class MakeGroupLocal(EditCommand[None]):
     def apply(self, document: OpenDocument) -> Edited[None]:
         group = folding.find_group(document.graph, self.id)
         if not group.path:
-            raise GraphError(f"group '{self.id}' is part of this document already")
+            raise GraphError(translate("group '{id}' is part of this document already", id=self.id))
         local = Group(paths.rebase_paths(group.body(), document.graph.folder))
-        return Edited(f"Make {self.id} local", None, _with_group(document.graph, self.id, local))
+        return Edited(translate("Make {id} local", id=self.id), None, _with_group(document.graph, self.id, local))
 
 
 @dataclass(frozen=True)
@@ -59,7 +65,11 @@ class LinkGroup(EditCommand[None]):
 
     def apply(self, document: OpenDocument) -> Edited[None]:
         linked = Group(self.body, paths.make_relative(self.path, document.root.folder))
-        return Edited(f"Link {self.id} to {self.path.name}", None, _with_group(document.graph, self.id, linked))
+        return Edited(
+            translate("Link {id} to {name}", id=self.id, name=self.path.name),
+            None,
+            _with_group(document.graph, self.id, linked),
+        )
 
 
 def _with_group(graph: Graph, id: str, group: Group) -> Graph:

@@ -14,6 +14,7 @@ from halation.nodes import Scalar
 from ...errors import GraphError
 from ...graph import Animation, Expression, Graph, Key, Keys, Port
 from ...graph.frames import list_range
+from ...language.translation import translate
 from ..edits.elements import clean_text
 from ..edits.values import find_expression_fault
 from ..state.open_document import OpenDocument
@@ -32,7 +33,9 @@ class SetKey(EditCommand[None]):
         check_not_animated_outside(document, self.port)
         before = document.graph.animation.get(self.port)
         if isinstance(before, Expression):
-            raise GraphError(f"{self.port} follows an expression: bake it into keys, or remove it first")
+            raise GraphError(
+                translate("{port} follows an expression: bake it into keys, or remove it first", port=self.port)
+            )
         keys = before or Keys()
         if self.value is not None:
             keys = keys.set(document.time.frame, to_scalar(self.value))
@@ -40,7 +43,9 @@ class SetKey(EditCommand[None]):
             keys = keys.insert(document.time.frame)
         else:
             keys = keys.set(document.time.frame, to_scalar(document.time.evaluate(self.port)))
-        return Edited(f"Key {self.port}", None, document.graph.animate(self.port, keys), merge=self.merge)
+        return Edited(
+            translate("Key {port}", port=self.port), None, document.graph.animate(self.port, keys), merge=self.merge
+        )
 
 
 @dataclass(frozen=True)
@@ -52,9 +57,9 @@ class RemoveKey(EditCommand[None]):
     def apply(self, document: OpenDocument) -> Edited[None]:
         keys = document.graph.animation.get(self.port)
         if not isinstance(keys, Keys) or keys.key(document.time.frame) is None:
-            raise GraphError(f"{self.port} has no key at frame {document.time.frame}")
+            raise GraphError(translate("{port} has no key at frame {frame}", port=self.port, frame=document.time.frame))
         graph = _animate(document, document.graph, self.port, keys.remove(document.time.frame))
-        return Edited(f"Remove a key of {self.port}", None, graph)
+        return Edited(translate("Remove a key of {port}", port=self.port), None, graph)
 
 
 @dataclass(frozen=True)
@@ -110,7 +115,7 @@ class SetExpression(EditCommand[None]):
         if text and (fault := find_expression_fault(document.graph, self.port, text)):
             raise GraphError(fault)
         graph = _animate(document, document.graph, self.port, Expression(text) if text else None)
-        return Edited(f"Expression of {self.port}", None, graph, merge=self.merge)
+        return Edited(translate("Expression of {port}", port=self.port), None, graph, merge=self.merge)
 
 
 @dataclass(frozen=True)
@@ -125,12 +130,14 @@ class BakeKeys(EditCommand[None]):
         first, last = document.time.frames
         frames = list_range(first, last) if self.frames is None else tuple(self.frames)
         if not frames:
-            raise GraphError(f"{self.port}: there are no frames to bake")
+            raise GraphError(translate("{port}: there are no frames to bake", port=self.port))
         values = {frame: to_scalar(document.time.evaluate(self.port, frame)) for frame in frames}
         keys = (
             Key(frame, plain, "constant" if isinstance(plain, bool) else "linear") for frame, plain in values.items()
         )
-        return Edited(f"Bake {self.port}", None, document.graph.animate(self.port, Keys(tuple(keys))))
+        return Edited(
+            translate("Bake {port}", port=self.port), None, document.graph.animate(self.port, Keys(tuple(keys)))
+        )
 
 
 def add_key(document: OpenDocument, port: Port, value: object) -> Keys | None:
@@ -138,15 +145,22 @@ def add_key(document: OpenDocument, port: Port, value: object) -> Keys | None:
     check_not_animated_outside(document, port)
     before = document.graph.animation.get(port)
     if isinstance(before, Expression):
-        raise GraphError(f"{port} follows an expression: edit it, or remove it first")
+        raise GraphError(translate("{port} follows an expression: edit it, or remove it first", port=port))
     return before and before.set(document.time.frame, to_scalar(value))
 
 
 def check_not_animated_outside(document: OpenDocument, port: Port) -> None:
     """Raise GraphError for a value that is animated as a control of the group around it."""
     if outer := document.time.find_outer_animation(port):
-        where = "/".join(outer[0]) or "the graph outside"
-        raise GraphError(f"{port} is animated as '{outer[1]}' in {where}: change it there")
+        where = "/".join(outer[0]) or translate("the graph outside")
+        raise GraphError(
+            translate(
+                "{port} is animated as '{control}' in {where}: change it there",
+                port=port,
+                control=outer[1],
+                where=where,
+            )
+        )
 
 
 def _animate(document: OpenDocument, graph: Graph, port: Port, animation: Animation | None) -> Graph:
@@ -167,4 +181,4 @@ def to_scalar(value: object) -> Scalar:
         return tuple(float(part) for part in value)
     if isinstance(value, bool | int | float | str):
         return value
-    raise GraphError(f"{value!r} cannot be a key: set a number, or a list of numbers")
+    raise GraphError(translate("{value!r} cannot be a key: set a number, or a list of numbers", value=value))

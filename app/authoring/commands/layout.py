@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from ...language.translation import translate
 from ..edits import align, arranging, elements, naming
 from ..edits.element_id import ElementId
 from ..edits.elements import Sizes
@@ -25,7 +26,9 @@ class MoveElements(EditCommand[None]):
         places = {key: document.position(key) for key in self.elements}
         moved = {key: (x + self.dx, y + self.dy) for key, (x, y) in places.items()}
         graph = elements.with_places(document.graph, moved)
-        return Edited(f"Move {naming.describe_elements(places)}", None, graph, merge=self.merge)
+        return Edited(
+            translate("Move {elements}", elements=naming.describe_elements(places)), None, graph, merge=self.merge
+        )
 
 
 @dataclass(frozen=True)
@@ -40,7 +43,7 @@ class PlaceElement(EditCommand[None]):
     def apply(self, document: OpenDocument) -> Edited[None]:
         document.position(self.element)
         graph = elements.with_places(document.graph, {self.element: (self.x, self.y)})
-        return Edited(f"Move {self.element}", None, graph, merge=self.merge)
+        return Edited(translate("Move {element}", element=self.element), None, graph, merge=self.merge)
 
 
 @dataclass(frozen=True)
@@ -53,7 +56,11 @@ class AlignSelection(EditCommand[None]):
     def apply(self, document: OpenDocument) -> Edited[None]:
         chosen = [key for key in document.elements if key in document.selection]
         places = align.align_elements(document.graph, chosen, self.side, document.positions, self.sizes)
-        return Edited(f"Align {self.side}", None, elements.with_places(document.graph, places))
+        return Edited(
+            translate("Align: {side}", side=translate(self.side, "alignment")),
+            None,
+            elements.with_places(document.graph, places),
+        )
 
 
 @dataclass(frozen=True)
@@ -66,4 +73,4 @@ class ArrangeElements(EditCommand[None]):
         graph = document.graph
         chosen = {key for key in document.selection if elements.can_be_linked(key, graph)}
         graph = arranging.arrange(graph, chosen if len(chosen) > 1 else None, document.positions, self.sizes)
-        return Edited("Arrange", None, graph)
+        return Edited(translate("Arrange"), None, graph)

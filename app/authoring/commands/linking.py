@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from ...errors import GraphError
 from ...graph import Port
+from ...language.translation import translate
 from ..edits import appending, deleting, elements, naming, wiring
 from ..edits.element_id import ElementId
 from ..edits.selection import order_selection
@@ -24,7 +25,7 @@ class Connect(EditCommand[None]):
 
     def apply(self, document: OpenDocument) -> Edited[None]:
         graph = document.graph.connect(self.source, self.target)
-        return Edited(f"Link {self.source} to {self.target}", None, graph)
+        return Edited(translate("Link {source} to {target}", source=self.source, target=self.target), None, graph)
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ class ConnectNodes(EditCommand[None]):
     def apply(self, document: OpenDocument) -> Edited[None]:
         graph = document.graph.connect(self.source, self.target)
         graph = appending.connect_alike(graph, self.source.node, self.target.node)
-        return Edited(f"Link {self.source} to {self.target}", None, graph)
+        return Edited(translate("Link {source} to {target}", source=self.source, target=self.target), None, graph)
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ class Disconnect(EditCommand[None]):
     target: Port
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        return Edited(f"Unlink {self.target}", None, document.graph.disconnect(self.target))
+        return Edited(translate("Unlink {target}", target=self.target), None, document.graph.disconnect(self.target))
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,9 @@ class DisconnectAll(EditCommand[None]):
             for end, start in document.graph.links.items()
             if self.element in (ElementId.of_port(end), ElementId.of_port(start))
         ]
-        return Edited(f"Unlink {self.element}", None, wiring.cut_links(document.graph, targets))
+        return Edited(
+            translate("Unlink {element}", element=self.element), None, wiring.cut_links(document.graph, targets)
+        )
 
 
 @dataclass(frozen=True)
@@ -72,7 +75,11 @@ class CutLinks(EditCommand[None]):
     targets: Collection[Port]
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        return Edited(f"Cut {count_links(self.targets)}", None, wiring.cut_links(document.graph, self.targets))
+        return Edited(
+            translate("Cut {links}", links=count_links(self.targets)),
+            None,
+            wiring.cut_links(document.graph, self.targets),
+        )
 
 
 @dataclass(frozen=True)
@@ -84,7 +91,7 @@ class MoveLink(EditCommand[None]):
 
     def apply(self, document: OpenDocument) -> Edited[None]:
         graph = wiring.move_link(document.graph, self.old_target, self.new_target)
-        return Edited(f"Move link to {self.new_target}", None, graph)
+        return Edited(translate("Move link to {new_target}", new_target=self.new_target), None, graph)
 
 
 @dataclass(frozen=True)
@@ -94,7 +101,7 @@ class SwapInputs(EditCommand[None]):
     id: str
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        return Edited(f"Swap inputs of {self.id}", None, wiring.swap_inputs(document.graph, self.id))
+        return Edited(translate("Swap inputs of {id}", id=self.id), None, wiring.swap_inputs(document.graph, self.id))
 
 
 @dataclass(frozen=True)
@@ -104,9 +111,9 @@ class DeleteSelection(EditCommand[None]):
     heal: bool = True
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        doomed = require_selection(document, "delete")
+        doomed = require_selection(document, translate("nothing is selected: select what to delete"))
         graph = deleting.delete_elements(document.graph, doomed, self.heal)
-        return Edited(f"Delete {naming.describe_elements(doomed)}", None, graph, ())
+        return Edited(translate("Delete {elements}", elements=naming.describe_elements(doomed)), None, graph, ())
 
 
 @dataclass(frozen=True)
@@ -116,8 +123,15 @@ class ExtractSelection(EditCommand[None]):
     merge: str = ""
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        graph = wiring.extract_nodes(document.graph, require_nodes(document, "extract"))
-        return Edited(f"Extract {naming.describe_elements(document.selection)}", None, graph, merge=self.merge)
+        graph = wiring.extract_nodes(
+            document.graph, require_nodes(document, translate("no node is selected: select what to extract"))
+        )
+        return Edited(
+            translate("Extract {elements}", elements=naming.describe_elements(document.selection)),
+            None,
+            graph,
+            merge=self.merge,
+        )
 
 
 @dataclass(frozen=True)
@@ -130,7 +144,7 @@ class ReplaceNode(EditCommand[None]):
     def apply(self, document: OpenDocument) -> Edited[None]:
         kind = type(make_node(document, self.type_id))
         graph = wiring.replace_node(document.graph, self.id, kind)
-        return Edited(f"Replace {self.id} by {self.type_id}", None, graph)
+        return Edited(translate("Replace {id} by {type_id}", id=self.id, type_id=self.type_id), None, graph)
 
 
 @dataclass(frozen=True)
@@ -145,7 +159,7 @@ class RenameNode(EditCommand[None]):
         old, new = ElementId(self.id), ElementId(self.new)
         selected = order_selection(document.selection, document.active)
         selection = [new if element == old else element for element in selected]
-        return Edited(f"Rename {old} to {new}", None, graph, selection, renamed=(old, new))
+        return Edited(translate("Rename {old} to {new}", old=old, new=new), None, graph, selection, renamed=(old, new))
 
 
 @dataclass(frozen=True)
@@ -153,13 +167,16 @@ class ToggleMute(EditCommand[None]):
     """Mute the selected nodes; if all are muted already, let them work again."""
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        ids = require_nodes(document, "mute")
+        ids = require_nodes(document, translate("no node is selected: select what to mute"))
         mutes = not document.graph.muted.issuperset(ids)
         graph = document.graph
         for id in ids:
             graph = graph.mute(id, mutes)
-        verb = "Mute" if mutes else "Unmute"
-        return Edited(f"{verb} {naming.describe_elements(document.selection)}", None, graph)
+        elements = naming.describe_elements(document.selection)
+        label = translate("Mute {elements}", elements=elements)
+        if not mutes:
+            label = translate("Unmute {elements}", elements=elements)
+        return Edited(label, None, graph)
 
 
 @dataclass(frozen=True)
@@ -170,10 +187,12 @@ class ToggleCollapse(EditCommand[None]):
         graph = document.graph
         chosen = [key for key in document.elements if key in document.selection and elements.can_be_linked(key, graph)]
         if not chosen:
-            raise GraphError("no node is selected: select what to collapse")
+            raise GraphError(translate("no node is selected: select what to collapse"))
         collapses = not all(elements.entry(graph, key).get("collapsed") is True for key in chosen)
         facts: dict[ElementId, Mapping[str, object]] = {
             key: {"collapsed": True if collapses else None} for key in chosen
         }
-        label = f"{'Collapse' if collapses else 'Expand'} {naming.describe_elements(chosen)}"
+        label = translate("Collapse {elements}", elements=naming.describe_elements(chosen))
+        if not collapses:
+            label = translate("Expand {elements}", elements=naming.describe_elements(chosen))
         return Edited(label, None, elements.with_entries(graph, facts))

@@ -1,4 +1,4 @@
-"""Commands for named items, such as lights: add, duplicate, remove, rename. Fields are set like values."""
+"""Commands for named items, such as lights: add, duplicate, remove, rename, exchange. Fields are set like values."""
 
 from __future__ import annotations
 
@@ -10,10 +10,12 @@ from halation.nodes import NamedItem
 from ...errors import GraphError
 from ...graph import Port
 from ...graph.scalars import coerce_scalar
+from ...language.translation import translate
 from ..edits.elements import clean_text
 from ..edits.named_items import (
     copy_animation,
     drop_item,
+    exchange_items,
     find_item,
     find_items,
     fresh_item_name,
@@ -32,11 +34,19 @@ class AddItem(EditCommand[str]):
     kind: str
     fields: Mapping[str, object] = field(default_factory=dict[str, object])
     name: str = ""
+    merge: str = ""
 
     def apply(self, document: OpenDocument) -> Edited[str]:
         declared, items = find_items(document.graph, self.port)
         if self.kind not in declared.by_name:
-            raise GraphError(f"'{self.kind}' is no kind of {declared.noun}: it takes {', '.join(declared.by_name)}")
+            raise GraphError(
+                translate(
+                    "'{kind}' is no kind of {noun}: it takes {kinds}",
+                    kind=self.kind,
+                    noun=declared.noun,
+                    kinds=", ".join(declared.by_name),
+                )
+            )
         name = clean_text(self.name) or fresh_item_name(self.kind, items)
         graph = insert_item(document.graph, self.port, name, NamedItem(self.kind))
         graph = graph.put_all(
@@ -46,7 +56,7 @@ class AddItem(EditCommand[str]):
                 if part in self.fields and (plain := coerce_scalar(declaration, self.fields[part])) is not None
             }
         )
-        return Edited(f"Add {declared.noun} {name}", name, graph)
+        return Edited(translate("Add {noun} {name}", noun=declared.noun, name=name), name, graph, merge=self.merge)
 
 
 @dataclass(frozen=True)
@@ -61,7 +71,7 @@ class DuplicateItem(EditCommand[str]):
         copied, copy = find_item(document.graph, self.port, self.name), fresh_item_name(self.name, items)
         graph = insert_item(document.graph, self.port, copy, copied)
         graph = copy_animation(graph, self.port, self.name, copy)
-        return Edited(f"Duplicate {declared.noun} {self.name}", copy, graph)
+        return Edited(translate("Duplicate {noun} {name}", noun=declared.noun, name=self.name), copy, graph)
 
 
 @dataclass(frozen=True)
@@ -74,7 +84,7 @@ class RemoveItem(EditCommand[None]):
     def apply(self, document: OpenDocument) -> Edited[None]:
         declared, _ = find_items(document.graph, self.port)
         graph = drop_item(document.graph, self.port, self.name)
-        return Edited(f"Remove {declared.noun} {self.name}", None, graph)
+        return Edited(translate("Remove {noun} {name}", noun=declared.noun, name=self.name), None, graph)
 
 
 @dataclass(frozen=True)
@@ -87,4 +97,17 @@ class RenameItem(EditCommand[None]):
 
     def apply(self, document: OpenDocument) -> Edited[None]:
         graph = rename_item(document.graph, self.port, self.old, clean_text(self.new).strip())
-        return Edited(f"Rename {self.old} to {self.new}", None, graph)
+        return Edited(translate("Rename {old} to {new}", old=self.old, new=self.new), None, graph)
+
+
+@dataclass(frozen=True)
+class ExchangeItems(EditCommand[None]):
+    """Give two named items each other's name, and so each other's place in the order; keys and controls follow."""
+
+    port: Port
+    first: str
+    second: str
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        graph = exchange_items(document.graph, self.port, self.first, self.second)
+        return Edited(translate("Exchange {first} and {second}", first=self.first, second=self.second), None, graph)

@@ -8,10 +8,14 @@ from halation.nodes import MAX_REFERENCE_HEIGHT, ColorSettings, Size
 
 from ...errors import GraphError
 from ...graph import Settings
+from ...language.translation import translate
 from ...resources.picture import MAX_OVERSCAN
 from ..state.document_time import MAX_FRAME
 from ..state.open_document import OpenDocument
 from .command import EditCommand, Edited
+
+_LEAST_RATE, _LARGEST_RATE = 0.01, 1000.0
+"""Frames per second: from one in 100 seconds to those of cameras for slow motion. Chosen by judgement."""
 
 
 @dataclass(frozen=True)
@@ -27,10 +31,12 @@ class SetFrameRange(EditCommand[None]):
         if self.first is not None:
             frames = (int(self.first), int(self.first if self.last is None else self.last))
         if frames and frames[0] > frames[1]:
-            raise GraphError(f"the first frame, {frames[0]}, comes after the last one, {frames[1]}")
+            raise GraphError(
+                translate("the first frame, {first}, comes after the last one, {last}", first=frames[0], last=frames[1])
+            )
         if frames and max(map(abs, frames)) > MAX_FRAME:
-            raise GraphError(f"frames go from {-MAX_FRAME} to {MAX_FRAME}")
-        return _set(document, "Set frames", replace(document.root.settings, frames=frames), self.merge)
+            raise GraphError(translate("frames go from {lowest} to {highest}", lowest=-MAX_FRAME, highest=MAX_FRAME))
+        return _set(document, translate("Set frames"), replace(document.root.settings, frames=frames), self.merge)
 
 
 @dataclass(frozen=True)
@@ -41,9 +47,15 @@ class SetFrameRate(EditCommand[None]):
     merge: str = ""
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        if not 0.01 <= self.rate <= 1000.0:
-            raise GraphError(f"{self.rate:g} frames per second: give 0.01 to 1000")
-        return _set(document, "Set rate", replace(document.root.settings, rate=float(self.rate)), self.merge)
+        if not _LEAST_RATE <= self.rate <= _LARGEST_RATE:
+            sentence = translate(
+                "{rate:g} frames per second: give {least:g} to {largest:g}",
+                rate=self.rate,
+                least=_LEAST_RATE,
+                largest=_LARGEST_RATE,
+            )
+            raise GraphError(sentence)
+        return _set(document, translate("Set rate"), replace(document.root.settings, rate=float(self.rate)), self.merge)
 
 
 @dataclass(frozen=True)
@@ -55,8 +67,10 @@ class SetPreroll(EditCommand[None]):
 
     def apply(self, document: OpenDocument) -> Edited[None]:
         if self.preroll is not None and not 0 <= self.preroll <= MAX_FRAME:
-            raise GraphError(f"a pre-roll of {self.preroll} frames: give 0 or more")
-        return _set(document, "Set pre-roll", replace(document.root.settings, preroll=self.preroll), self.merge)
+            raise GraphError(translate("a pre-roll of {preroll} frames: give 0 or more", preroll=self.preroll))
+        return _set(
+            document, translate("Set pre-roll"), replace(document.root.settings, preroll=self.preroll), self.merge
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,7 +86,7 @@ class SetColorSettings(EditCommand[None]):
         config = color.config if self.config is None else self.config
         working = color.working if self.working is None else self.working
         settings = replace(document.root.settings, color=ColorSettings(config, working))
-        return _set(document, "Set color", settings, self.merge)
+        return _set(document, translate("Set color"), settings, self.merge)
 
 
 @dataclass(frozen=True)
@@ -84,9 +98,15 @@ class SetReferenceHeight(EditCommand[None]):
 
     def apply(self, document: OpenDocument) -> Edited[None]:
         if self.height is not None and not 1 <= self.height <= MAX_REFERENCE_HEIGHT:
-            raise GraphError(f"a reference height of {self.height}: give 1 to {MAX_REFERENCE_HEIGHT}")
+            raise GraphError(
+                translate(
+                    "a reference height of {height}: give 1 to {most}", height=self.height, most=MAX_REFERENCE_HEIGHT
+                )
+            )
         settings = replace(document.graph.settings, reference_height=self.height)
-        return Edited("Set reference height", None, replace(document.graph, settings=settings), merge=self.merge)
+        return Edited(
+            translate("Set reference height"), None, replace(document.graph, settings=settings), merge=self.merge
+        )
 
 
 @dataclass(frozen=True)
@@ -98,8 +118,16 @@ class SetOverscan(EditCommand[None]):
 
     def apply(self, document: OpenDocument) -> Edited[None]:
         if not 0.0 <= self.overscan <= MAX_OVERSCAN:
-            raise GraphError(f"an overscan of {self.overscan:g}: give 0 to {MAX_OVERSCAN:g} heights of the frame")
-        return _set(document, "Set overscan", replace(document.root.settings, overscan=self.overscan), self.merge)
+            raise GraphError(
+                translate(
+                    "an overscan of {overscan:g}: give 0 to {most:g} heights of the frame",
+                    overscan=self.overscan,
+                    most=MAX_OVERSCAN,
+                )
+            )
+        return _set(
+            document, translate("Set overscan"), replace(document.root.settings, overscan=self.overscan), self.merge
+        )
 
 
 @dataclass(frozen=True)
@@ -112,9 +140,13 @@ class SetCanvasSize(EditCommand[None]):
     def apply(self, document: OpenDocument) -> Edited[None]:
         size = self.size
         if size is not None and min(size) < 1:
-            raise GraphError(f"the size {size[0]} x {size[1]} has no pixels: give at least 1 x 1")
+            raise GraphError(
+                translate(
+                    "the size {width} x {height} has no pixels: give at least 1 x 1", width=size[0], height=size[1]
+                )
+            )
         settings = replace(document.graph.settings, size=size and (int(size[0]), int(size[1])))
-        return Edited("Set size", None, replace(document.graph, settings=settings), merge=self.merge)
+        return Edited(translate("Set size"), None, replace(document.graph, settings=settings), merge=self.merge)
 
 
 def _set(document: OpenDocument, label: str, settings: Settings, merge: str) -> Edited[None]:

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from halation.nodes import Plain
 from msgspec import structs
 
 from ...errors import GraphError
 from ...graph import Control, Port, signature
 from ...graph.names import fresh_name
 from ...graph.unit_conversion import convert_length_unit
+from ...language.translation import translate
 from ..edits.elements import clean_text
 from ..edits.values import find_control, fit_color, reset_value
 from ..state.open_document import OpenDocument
@@ -30,9 +32,11 @@ class SetValue(EditCommand[None]):
         fitted = fit_color(document.graph, self.port, self.value)
         if keys := add_key(document, self.port, fitted):
             graph = document.graph.animate(self.port, keys)
-            return Edited(f"Key {self.port}", None, graph, merge=self.merge)
+            return Edited(translate("Key {port}", port=self.port), None, graph, merge=self.merge)
         plain = clean_text(fitted) if isinstance(fitted, str) else fitted
-        return Edited(f"Set {self.port}", None, document.graph.set(self.port, plain), merge=self.merge)
+        return Edited(
+            translate("Set {port}", port=self.port), None, document.graph.set(self.port, plain), merge=self.merge
+        )
 
 
 @dataclass(frozen=True)
@@ -53,6 +57,21 @@ class SetValues(EditCommand[None]):
 
 
 @dataclass(frozen=True)
+class OverrideValues(EditCommand[None]):
+    """Set values of the whole document by their paths, inside of groups too, as one step."""
+
+    settings: Mapping[str, Plain]
+    label: str
+    merge: str = ""
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        root = document.root
+        for path, value in self.settings.items():
+            root = root.override(path, tuple(value) if isinstance(value, list) else value)
+        return Edited(self.label, None, root=root, merge=self.merge)
+
+
+@dataclass(frozen=True)
 class ConvertLength(EditCommand[None]):
     """Give a length in another unit, so that a picture of a height stays as it is."""
 
@@ -64,7 +83,7 @@ class ConvertLength(EditCommand[None]):
         graph = document.graph
         for port in self.ports:
             graph = convert_length_unit(graph, port, self.unit, self.height)
-        return Edited(f"Set unit to {self.unit}", None, graph)
+        return Edited(translate("Set unit to {unit}", unit=self.unit), None, graph)
 
 
 @dataclass(frozen=True)
@@ -74,7 +93,7 @@ class ResetValue(EditCommand[None]):
     port: Port
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        return Edited(f"Reset {self.port}", None, reset_value(document.graph, self.port))
+        return Edited(translate("Reset {port}", port=self.port), None, reset_value(document.graph, self.port))
 
 
 @dataclass(frozen=True)
@@ -87,7 +106,7 @@ class ResetNode(EditCommand[None]):
         graph = document.graph
         for name in signature(graph.node(self.id)).values:
             graph = reset_value(graph, Port(self.id, name))
-        return Edited(f"Reset {self.id}", None, graph)
+        return Edited(translate("Reset {id}", id=self.id), None, graph)
 
 
 @dataclass(frozen=True)
@@ -99,12 +118,14 @@ class ExposeValue(EditCommand[str]):
 
     def apply(self, document: OpenDocument) -> Edited[str]:
         if control := find_control(document.graph, self.port):
-            raise GraphError(f"'{self.port}' is the control '{control}' already")
+            raise GraphError(translate("'{port}' is the control '{control}' already", port=self.port, control=control))
         graph = document.graph
         name = self.name or fresh_name(self.port.socket, {*graph.controls, *graph.inputs})
         values = signature(graph.node(self.port.node)).values
         label = values[self.port.socket].label if self.port.socket in values else ""
-        return Edited(f"Expose {self.port}", name, graph.add_control(name, Control(self.port, label)))
+        return Edited(
+            translate("Expose {port}", port=self.port), name, graph.add_control(name, Control(self.port, label))
+        )
 
 
 @dataclass(frozen=True)
@@ -114,7 +135,7 @@ class HideControl(EditCommand[None]):
     name: str
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        return Edited(f"Hide {self.name}", None, document.graph.remove_control(self.name))
+        return Edited(translate("Hide {name}", name=self.name), None, document.graph.remove_control(self.name))
 
 
 @dataclass(frozen=True)
@@ -127,7 +148,7 @@ class RenameControl(EditCommand[None]):
     def apply(self, document: OpenDocument) -> Edited[None]:
         moves = {Port("controls", self.old): Port("controls", self.new)}
         graph = document.graph.rename_control(self.old, self.new)
-        return Edited(f"Rename {self.old} to {self.new}", None, graph, moves=moves)
+        return Edited(translate("Rename {old} to {new}", old=self.old, new=self.new), None, graph, moves=moves)
 
 
 @dataclass(frozen=True)
@@ -142,9 +163,9 @@ class DescribeControl(EditCommand[None]):
     def apply(self, document: OpenDocument) -> Edited[None]:
         graph = document.graph
         if self.name not in graph.controls:
-            raise GraphError(f"the graph has no control '{self.name}'")
+            raise GraphError(translate("the graph has no control '{name}'", name=self.name))
         texts = (("label", self.label), ("doc", self.doc))
         new_texts = {key: clean_text(text) for key, text in texts if text is not None}
         changed = structs.replace(graph.controls[self.name], **new_texts)
         graph = replace(graph, controls={**graph.controls, self.name: changed})
-        return Edited(f"Describe {self.name}", None, graph, merge=self.merge)
+        return Edited(translate("Describe {name}", name=self.name), None, graph, merge=self.merge)

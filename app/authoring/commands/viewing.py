@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from ...errors import GraphError
 from ...graph import Graph, Port
+from ...language.translation import translate
 from ..edits.element_id import ElementId
 from ..edits.elements import with_sections
 from ..edits.ports import VIEWER_NUMBERS, is_viewable, output_ports
@@ -23,14 +24,19 @@ class AssignViewer(EditCommand[None]):
 
     def apply(self, document: OpenDocument) -> Edited[None]:
         if self.number not in VIEWER_NUMBERS:
-            raise GraphError(f"there is no viewer {self.number}: choose 1 to 9")
+            raise GraphError(translate("there is no viewer {number}: choose 1 to 9", number=self.number))
         graph = document.graph
         port = self.port or _find_active_port(document) or document.views.find_port()
         if port is None or not is_viewable(graph, port):
-            raise GraphError("there is nothing to show: select a node first")
+            raise GraphError(translate("there is nothing to show: select a node first"))
         section = graph.ui.get("viewers")
         viewers = {**(section if isinstance(section, Mapping) else {}), str(self.number): str(port)}
-        return Edited(f"Assign viewer {self.number}", None, with_sections(graph, {"viewers": viewers}), view=port)
+        return Edited(
+            translate("Assign viewer {number}", number=self.number),
+            None,
+            with_sections(graph, {"viewers": viewers}),
+            view=port,
+        )
 
 
 @dataclass(frozen=True)

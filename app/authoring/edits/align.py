@@ -7,6 +7,7 @@ from typing import Literal, get_args
 
 from ...errors import GraphError
 from ...graph import Graph
+from ...language.translation import translate
 from .element_id import ElementId
 from .elements import Place, Places, Sizes
 from .sizes import element_size
@@ -29,9 +30,9 @@ def align_elements(
     is_horizontal = side in ("left", "right", "center x", "distribute x")
     if side.startswith("distribute"):
         if len(elements) < 3:
-            raise GraphError("select at least three elements to distribute")
+            raise GraphError(translate("select at least three elements to distribute"))
     elif len(elements) < 2:
-        raise GraphError("select at least two elements to align")
+        raise GraphError(translate("select at least two elements to align"))
     axis = 0 if is_horizontal else 1
     spans = {key: (places[key][axis], element_size(graph, key, sizes)[axis]) for key in elements}
     starts = _align_spans(spans, side)
@@ -52,7 +53,9 @@ def _align_spans(spans: Mapping[ElementId, tuple[float, float]], side: str) -> d
             return {key: mean - length / 2.0 for key, (_, length) in spans.items()}
         case "distribute x" | "distribute y":
             return _distribute(spans)
-    raise GraphError(f"'{side}' is not an alignment: use one of {', '.join(get_args(Side))}")
+    raise GraphError(
+        translate("'{side}' is not an alignment: use one of {sides}", side=side, sides=", ".join(get_args(Side)))
+    )
 
 
 def _distribute(spans: Mapping[ElementId, tuple[float, float]]) -> dict[ElementId, float]:

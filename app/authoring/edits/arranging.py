@@ -12,6 +12,9 @@ from .layout import bounds, lay_out
 from .routes import routes
 from .sizes import element_size
 
+_DOT_DROP = 12.0
+"""How far below the corners of its nodes a dot is placed, in canvas units: about where the first sockets are."""
+
 
 def arrange(graph: Graph, chosen: Collection[ElementId] | None, places: Places, sizes: Sizes | None = None) -> Graph:
     """A graph where some nodes and ends, or all of them, are laid out in layers from left to right.
@@ -49,6 +52,6 @@ def _spread_dots(graph: Graph, places: Places, moved: set[ElementId], sizes: Siz
                 share = number / (len(dots) + 1)
                 across = (places[end][0] - x - width) * share
                 dot_places.setdefault(
-                    ElementId.of("dot", dot), (x + width + across, y + (places[end][1] - y) * share + 12.0)
+                    ElementId.of("dot", dot), (x + width + across, y + (places[end][1] - y) * share + _DOT_DROP)
                 )
     return dot_places

@@ -12,6 +12,7 @@ from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Port, Settings
 from ...graph.names import fresh_name
 from ...graph.notes import keys_of_nodes
+from ...language.translation import translate
 from ...resources.sandbox import Sandbox
 from . import timing
 from .element_id import ElementId
@@ -56,7 +57,7 @@ def copy_elements(graph: Graph, chosen: Collection[ElementId]) -> str:
     Raises GraphError if no element is chosen.
     """
     if not chosen:
-        raise GraphError("nothing is selected: select what to copy")
+        raise GraphError(translate("nothing is selected: select what to copy"))
     copied_graph = cut_part(graph, chosen)
     folder = str(Path(graph.folder).absolute())
     return dumps(replace(copied_graph, extra={**copied_graph.extra, "": {_FROM: folder}}))
@@ -65,7 +66,7 @@ def copy_elements(graph: Graph, chosen: Collection[ElementId]) -> str:
 def read_part(text: str, folder: str, types: Types, sandbox: Sandbox) -> Graph:
     """The graph in a text, with paths that start in `folder`. Raises GraphError for a text without any."""
     if not text.lstrip().startswith("{"):
-        raise GraphError("there are no nodes to paste: copy some first")
+        raise GraphError(translate("there are no nodes to paste: copy some first"))
     try:
         stated_folder = json.loads(text).get(_FROM)
     except (ValueError, RecursionError):
@@ -95,7 +96,7 @@ def paste_part(
     names = {**combined.names, **ends}
     put = {key: name for key, name in names.items() if name not in existing}
     if not put:
-        raise GraphError("there is nothing to paste: copy nodes, frames or comments first")
+        raise GraphError(translate("there is nothing to paste: copy nodes, frames or comments first"))
     spots = _place_part({key: spot for key, spot in positions(part).items() if key in put}, places, at, offset)
     after = with_places(combined.graph, {put[key]: spot for key, spot in spots.items()})
     folded = [name for key, name in put.items() if key.port and entry(part, key).get("collapsed") is True]

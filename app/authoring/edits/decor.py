@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
+from types import MappingProxyType
 
 from ...errors import GraphError
 from ...graph import Graph
+from ...language.translation import mark, translate
 from .element_id import DECOR, ElementId
 from .elements import (
     Place,
@@ -29,6 +31,7 @@ EMPTY = (320.0, 200.0)
 """The size of an empty frame."""
 
 SMALLEST = 40.0
+"""The smallest side of a frame: its title is 28 high."""
 
 Color = tuple[float, float, float]
 
@@ -71,11 +74,21 @@ def set_box(graph: Graph, note: ElementId, x: float, y: float, width: float, hei
     return with_entries(graph, {note: facts})
 
 
+_MISSING: Mapping[str, str] = MappingProxyType(
+    {
+        "frame": mark("there is no frame '{name}'"),
+        "comment": mark("there is no comment '{name}'"),
+        "dot": mark("there is no dot '{name}'"),
+    }
+)
+"""What is said where an element of a kind is missing."""
+
+
 def set_facts(graph: Graph, note: ElementId, **facts: object) -> Graph:
     """The graph with other facts of a frame or comment. Raises GraphError if there is none."""
     kind = note.kind
     if kind not in DECOR or note not in list_decor(graph, kind):
-        raise GraphError(f"there is no {kind} '{note.name}'")
+        raise GraphError(translate(_MISSING.get(kind, _MISSING["frame"]), name=note.name))
     return with_entries(graph, {note: facts})
 
 

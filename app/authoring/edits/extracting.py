@@ -7,6 +7,7 @@ from collections.abc import Collection
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Input, Item, Output, Port, Unknown, signature
 from ...graph.names import fresh_name
+from ...language.translation import translate
 from .element_id import ElementId
 from .grouping import make_group
 
@@ -47,7 +48,7 @@ def _with_free_outputs(body: Graph) -> Graph:
             body = body.add_output(name, Output(socket.kind, socket.channels))
             body = body.connect(Port(id, socket.name), Port(OUTPUTS, name))
     if not body.outputs:
-        raise GraphError("these nodes have no result: select nodes that make a picture or a number")
+        raise GraphError(translate("these nodes have no result: select nodes that make a picture or a number"))
     return body
 
 

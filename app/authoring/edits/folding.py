@@ -10,6 +10,7 @@ from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Port, signature
 from ...graph.model import MAX_GROUP_DEPTH
 from ...graph.notes import move_layout
+from ...language.translation import translate
 from . import timing
 from .routes import tidy_routes
 
@@ -26,7 +27,7 @@ def find_group(graph: Graph, id: str) -> Group:
     """The group of that id. Raises GraphError."""
     item = graph.node(id)
     if not isinstance(item, Group):
-        raise GraphError(f"node '{id}' is not a group")
+        raise GraphError(translate("node '{id}' is not a group", id=id))
     return item
 
 
@@ -67,7 +68,11 @@ def put_body(graph: Graph, path: GroupPath, body: Graph, moves: Moves | None = N
     if borrowed_group := find_borrowed_group(graph, path):
         file = f"'{borrowed_group[1]}'"
         raise GraphError(
-            f"group '{borrowed_group[0][-1]}' comes from the file {file}: make it local first, or open that file"
+            translate(
+                "group '{group}' comes from the file {file}: make it local first, or open that file",
+                group=borrowed_group[0][-1],
+                file=file,
+            )
         )
     for depth in range(len(path) - 1, -1, -1):
         body = _put_group_body(body_at(graph, path[:depth]), path[depth], body, moves or {})
@@ -94,7 +99,13 @@ def check_depth(graph: Graph) -> None:
         for id, item in body.nodes.items():
             if isinstance(item, Group):
                 if depth >= MAX_GROUP_DEPTH:
-                    raise GraphError(f"group '{id}' would be nested deeper than {MAX_GROUP_DEPTH}: ungroup some groups")
+                    raise GraphError(
+                        translate(
+                            "group '{id}' would be nested deeper than {depth}: ungroup some groups",
+                            id=id,
+                            depth=MAX_GROUP_DEPTH,
+                        )
+                    )
                 todo.append((item.graph, depth + 1))
 
 

@@ -11,6 +11,7 @@ from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Control, Graph, Group, Input, Output, Port, Settings
 from ...graph.names import check_name, fresh_name
 from ...graph.notes import keys_of_nodes
+from ...language.translation import translate
 from . import timing
 from .element_id import ElementId
 from .elements import (
@@ -41,7 +42,7 @@ def make_group(graph: Graph, chosen: Collection[ElementId], name: str = "") -> t
     """
     ids = [id for id in graph.nodes if id in chosen]
     if not ids:
-        raise GraphError("no node is selected: select the nodes to group")
+        raise GraphError(translate("no node is selected: select the nodes to group"))
     _check_no_way_back(graph, set(ids))
     rest = {id: item for id, item in graph.nodes.items() if id not in chosen}
     id = fresh_name(name or "group", {*rest, INPUTS, OUTPUTS})
@@ -211,6 +212,9 @@ def _check_no_way_back(graph: Graph, ids: set[str]) -> None:
     before = set[str]().union(*(graph.upstream(id) for id in ids)) - ids
     if between := sorted(after & before):
         raise GraphError(
-            f"these nodes cannot become a group, because it would feed itself: '{between[0]}' lies between them; "
-            "select it too, or deselect the nodes that it feeds"
+            translate(
+                "these nodes cannot become a group, because it would feed itself: '{node}' lies between "
+                "them; select it too, or deselect the nodes that it feeds",
+                node=between[0],
+            )
         )

@@ -13,6 +13,9 @@ from itertools import pairwise
 
 from ...graph.walk import sort_topologically
 
+GAP = 80.0, 40.0
+"""The space between columns and rows of boxes, in canvas units: chosen by eye, so that links can be told apart."""
+
 _SWEEPS = 8
 """Sweeps over the layers that reduce crossings. A choice: the best order so far is kept, and few sweeps improve it."""
 
@@ -61,7 +64,7 @@ def place_boxes(
     sizes: Mapping[str, tuple[float, float]],
     first: Iterable[str] = (),
     last: Iterable[str] = (),
-    gap: tuple[float, float] = (80.0, 40.0),
+    gap: tuple[float, float] = GAP,
 ) -> dict[str, tuple[float, float]]:
     """Top left of every box of `sizes`, the whole drawing starting at 0,0. The same for equal arguments."""
     pairs = sorted({(start, end) for start, end in links if start != end})

@@ -12,6 +12,7 @@ from ...errors import GraphError
 from ...graph import Animation, Control, Expression, Graph, Port, find_declaration
 from ...graph.named_items import check_new_item, split_path
 from ...graph.notes import move_keys
+from ...language.translation import translate
 
 _NUMBER = re.compile(r"_[0-9]+$")
 
@@ -20,7 +21,7 @@ def find_items(graph: Graph, port: Port) -> tuple[Items, ItemSet]:
     """What items a value can hold, and those that it holds. Raises GraphError for a value of another type."""
     items, declaration = graph.value(port), find_declaration(graph.node(port.node), port.socket)
     if not isinstance(items, ItemSet) or declaration is None or declaration.items is None:
-        raise GraphError(f"'{port}' holds no named items")
+        raise GraphError(translate("'{port}' holds no named items", port=port))
     return declaration.items, items
 
 
@@ -28,7 +29,7 @@ def find_item(graph: Graph, port: Port, name: str) -> NamedItem:
     """The item of a name. Raises GraphError."""
     declared, items = find_items(graph, port)
     if name not in items:
-        raise GraphError(f"'{port}' has no {declared.noun} '{name}'")
+        raise GraphError(translate("'{port}' has no {noun} '{name}'", port=port, noun=declared.noun, name=name))
     return items[name]
 
 
@@ -46,7 +47,14 @@ def insert_item(graph: Graph, port: Port, name: str, item: NamedItem) -> Graph:
     declared, items = find_items(graph, port)
     check_new_item(declared, items, name)
     if len(items) >= declared.most:
-        raise GraphError(f"there is no room for another {declared.noun}: '{port}' takes at most {declared.most}")
+        raise GraphError(
+            translate(
+                "there is no room for another {noun}: '{port}' takes at most {most}",
+                noun=declared.noun,
+                port=port,
+                most=declared.most,
+            )
+        )
     return _put_items(graph, port, items.with_item(name, item))
 
 
@@ -96,6 +104,16 @@ def rename_item(graph: Graph, port: Port, old: str, new: str) -> Graph:
         extra=move_keys(graph.extra, _keep_place(port, old), _keep_place(port, new)),
     )
     return _put_items(moved, port, items.without_item(old).with_item(new, item))
+
+
+def exchange_items(graph: Graph, port: Port, first: str, second: str) -> Graph:
+    """The graph where two named items have each other's name, and so each other's place in the order."""
+    find_item(graph, port, second)
+    if first == second:
+        return graph
+    between = fresh_item_name("moved", find_items(graph, port)[1])
+    graph = rename_item(graph, port, first, between)
+    return rename_item(rename_item(graph, port, second, first), port, between, second)
 
 
 def copy_animation(graph: Graph, port: Port, source: str, target: str) -> Graph:

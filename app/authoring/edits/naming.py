@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ...graph import Graph, Port, Unknown, find_declaration
 from ...graph.names import name_fault
+from ...language.translation import translate
 from .element_id import ElementId
 
 
@@ -34,11 +35,13 @@ def value_label(graph: Graph, port: Port) -> str:
     item = graph.nodes.get(port.node)
     value = None if item is None or isinstance(item, Unknown) else find_declaration(item, port.socket)
     words = port.socket.partition(".")[2] or port.socket
-    return (value.label if value else "") or words.replace(".", " ").replace("_", " ")
+    return translate((value.label if value else "") or words.replace(".", " ").replace("_", " "), "value")
 
 
 def describe_elements(elements: Collection[ElementId]) -> str:
     """Some elements for the label of a step: `blur`, `3 nodes`, `4 elements`."""
     if len(elements) == 1:
         return next(iter(elements))
-    return f"{len(elements)} {'nodes' if all(element.kind == 'node' for element in elements) else 'elements'}"
+    if all(element.kind == "node" for element in elements):
+        return translate("{count} nodes", count=len(elements))
+    return translate("{count} elements", count=len(elements))

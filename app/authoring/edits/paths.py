@@ -9,6 +9,7 @@ from pathlib import Path
 from ...errors import UsageError
 from ...graph import Graph, Group
 from ...graph.paths import rebase_paths, relocate_path, resolve_path
+from ...language.translation import translate
 
 __all__ = ["check_target", "group_files", "make_relative", "rebase_paths", "relocate_path", "resolve_path"]
 
@@ -35,4 +36,9 @@ def group_files(graph: Graph) -> Iterator[Path]:
 def check_target(graph: Graph, target: Path) -> None:
     """Raise UsageError where saving `graph` as `target` would put that file into itself."""
     if target.resolve() in {file.resolve() for file in group_files(graph)}:
-        raise UsageError(f"{target}: this file is used as a group in what would be saved there: choose another name")
+        raise UsageError(
+            translate(
+                "{target}: this file is used as a group in what would be saved there: choose another name",
+                target=target,
+            )
+        )

@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterable, Mapping
 
 from ...errors import GraphError
 from ...graph import Graph, Port
+from ...language.translation import translate
 from .element_id import ElementId
 from .elements import Place, fresh_decor, list_decor, place, with_places, with_sections, without_entries
 
@@ -61,7 +62,7 @@ def tidy_routes(graph: Graph) -> Graph:
 def add_dot(graph: Graph, target: Port, at: Place) -> tuple[Graph, ElementId]:
     """A dot on the link that feeds `target`, and its id; it goes where it makes the shortest detour."""
     if target not in graph.links:
-        raise GraphError(f"nothing is linked to '{target}': a dot needs a link")
+        raise GraphError(translate("nothing is linked to '{target}': a dot needs a link", target=target))
     dot = fresh_decor(graph, "dot")
     graph = with_places(graph, {dot: at})
     return with_routes(graph, {target: _insert_dot(graph, dots_on_link(graph, target), dot.name, at)}), dot
@@ -70,12 +71,16 @@ def add_dot(graph: Graph, target: Port, at: Place) -> tuple[Graph, ElementId]:
 def join_dot(graph: Graph, dot: ElementId, target: Port) -> Graph:
     """A graph where the link to `target` passes a dot of another link from the same source."""
     if target not in graph.links:
-        raise GraphError(f"nothing is linked to '{target}': a dot needs a link")
+        raise GraphError(translate("nothing is linked to '{target}': a dot needs a link", target=target))
     sources = {str(end): source for end, source in graph.links.items()}
     for end, dots in routes(graph).items():
         if dot.name in dots and sources.get(end) == graph.links[target]:
             return with_routes(graph, {target: dots[: dots.index(dot.name) + 1]})
-    raise GraphError(f"only links from the same source can share a dot: the link to '{target}' has another source")
+    raise GraphError(
+        translate(
+            "only links from the same source can share a dot: the link to '{target}' has another source", target=target
+        )
+    )
 
 
 def remove_dots(graph: Graph, removed: Collection[ElementId]) -> Graph:

@@ -8,6 +8,7 @@ from .elements import Sizes, entry
 
 WIDTH, HEADER, ROW = 180.0, 34.0, 22.0
 COMMENT = (200.0, 60.0)
+"""About what the editor draws, in canvas units: the first frame replaces it by what it has measured."""
 
 
 def element_size(graph: Graph, element: ElementId, measured: Sizes | None = None) -> tuple[float, float]:

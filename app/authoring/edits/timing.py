@@ -7,6 +7,7 @@ from collections.abc import Collection, Mapping
 from ...errors import GraphError
 from ...graph import Animation, Expression, Graph, Port, animation_fault
 from ...graph.names import fresh_name
+from ...language.translation import translate
 
 Animations = Mapping[Port, Animation]
 
@@ -82,6 +83,9 @@ def check_names(before: Graph, after: Graph, animation: Animations) -> None:
             continue
         if port not in before.animation or animation_fault(before, port, before.animation[port]) is None:
             raise GraphError(
-                f"the expression of '{port}' reads a value from the other side of the group's border: "
-                "bake it into keys first, or make that value a control"
+                translate(
+                    "the expression of '{port}' reads a value from the other side of the group's border: "
+                    "bake it into keys first, or make that value a control",
+                    port=port,
+                )
             )

@@ -9,6 +9,7 @@ from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Port
 from ...graph.names import fresh_name
 from ...graph.notes import move_keys
+from ...language.translation import translate
 from . import timing
 from .element_id import ElementId
 from .elements import Place, list_elements, with_sections, without_entries
@@ -29,7 +30,9 @@ def ungroup(graph: Graph, id: str) -> tuple[Graph, tuple[ElementId, ...]]:
     """
     item = find_group(graph, id)
     if id in graph.muted:
-        raise GraphError(f"group '{id}' is muted, so its content is not what it shows: unmute it first")
+        raise GraphError(
+            translate("group '{id}' is muted, so its content is not what it shows: unmute it first", id=id)
+        )
     body = rebase_paths(item.body(), graph.folder)
     outer = _remove_group(graph, id)
     merged_part = merge_part(outer, body, _content_places(graph, id, body))

@@ -11,6 +11,7 @@ from ...errors import GraphError
 from ...graph import Graph, Item, Port, conversion, make_socket, signature
 from ...graph.values import coerce, value_fault
 from ...graph.walk import describe_loop, find_route
+from ...language.translation import translate
 from .element_id import ElementId
 from .elements import place
 from .routes import dots_on_link as dots_of
@@ -45,7 +46,14 @@ def first_target(graph: Graph, source: Port, id: str, values: bool = True) -> Po
     free = [port for port in ports if port not in graph.links and not _is_folded(graph, port)]
     fitting = [port for port in (*free, *ports) if why_not_linkable(graph, source, port) is None]
     if not fitting:
-        raise GraphError(f"'{source}' fits no input of node '{id}'{_explain_refusal(graph, source, ports)}")
+        raise GraphError(
+            translate(
+                "'{source}' fits no input of node '{id}'{reason}",
+                source=source,
+                id=id,
+                reason=_explain_refusal(graph, source, ports),
+            )
+        )
     return fitting[0]
 
 
@@ -61,8 +69,8 @@ def first_source(graph: Graph, id: str, target: Port) -> Port:
     ports = [Port(id, name) for name in signature(graph.node(id)).outputs]
     fitting = [port for port in ports if why_not_linkable(graph, port, target) is None]
     if not fitting:
-        why = f": {why_not_linkable(graph, ports[0], target)}" if ports else ": it has no outputs"
-        raise GraphError(f"no output of node '{id}' fits '{target}'{why}")
+        why = f": {why_not_linkable(graph, ports[0], target)}" if ports else translate(": it has no outputs")
+        raise GraphError(translate("no output of node '{id}' fits '{target}'{why}", id=id, target=target, why=why))
     return fitting[0]
 
 
@@ -119,13 +127,19 @@ def splice_chain(graph: Graph, ids: Collection[str], target: Port) -> Graph:
     for end, start in graph.links.items():
         if (end.node in ids) != (start.node in ids):
             inner = end.node if end.node in ids else start.node
-            raise GraphError(f"node '{inner}' is linked with others: extract the selection to put it into a link")
+            raise GraphError(
+                translate(
+                    "node '{inner}' is linked with others: extract the selection to put it into a link", inner=inner
+                )
+            )
     inner = [(start.node, end.node) for end, start in graph.links.items() if end.node in ids]
     fed, feeding = {end for _, end in inner}, {start for start, _ in inner}
     last = [id for id in graph.nodes if id in ids and id not in feeding]
     first = [id for id in graph.nodes if id in ids and id not in fed and list_targets(graph.nodes[id], id)]
     if len(last) != 1 or len(first) != 1:
-        raise GraphError("these nodes are not a chain: only a chain with one first and one last node fits into a link")
+        raise GraphError(
+            translate("these nodes are not a chain: only a chain with one first and one last node fits into a link")
+        )
     return _put_chain_between(graph, first[0], last[0], target)
 
 
@@ -133,10 +147,12 @@ def _put_chain_between(graph: Graph, first: str, last: str, target: Port) -> Gra
     """A graph where a chain from node `first` to node `last` stands in the link that feeds `target`."""
     source = graph.links.get(target)
     if source is None:
-        raise GraphError(f"nothing is linked to '{target}': a node can only be put into a link")
+        raise GraphError(
+            translate("nothing is linked to '{target}': a node can only be put into a link", target=target)
+        )
     for id in (first, last):
         if id in (source.node, target.node):
-            raise GraphError(f"node '{id}' is an end of that link already")
+            raise GraphError(translate("node '{id}' is an end of that link already", id=id))
     dots = dots_of(graph, target)
     entrance = first_target(graph.disconnect(target), source, first, values=False)
     after = graph.disconnect(target).connect(source, entrance)
@@ -164,7 +180,7 @@ def extract_nodes(graph: Graph, ids: Collection[str]) -> Graph:
         after = remove_node(after, id)
     inner = {end: start for end, start in graph.links.items() if end.node in ids and start.node in ids}
     if inner.keys() | after.links.keys() == graph.links.keys() and {**after.links, **inner} == graph.links:
-        raise GraphError("these nodes are in no chain: they have no links to other nodes")
+        raise GraphError(translate("these nodes are in no chain: they have no links to other nodes"))
     routes = {end: dots_of(after, end) for end in after.links} | {end: dots_of(graph, end) for end in inner}
     return with_routes(
         replace(graph, links={**after.links, **inner}), routes | {end: () for end in graph.links if end not in routes}
@@ -182,7 +198,7 @@ def move_link(graph: Graph, old: Port, new: Port) -> Graph:
     """A graph where a link feeds another socket."""
     source = graph.links.get(old)
     if source is None:
-        raise GraphError(f"nothing is linked to '{old}'")
+        raise GraphError(translate("nothing is linked to '{old}'", old=old))
     dots = dots_of(graph, old)
     return graph if old == new else with_routes(graph.disconnect(old).connect(source, new), {new: dots})
 
@@ -194,7 +210,9 @@ def swap_inputs(graph: Graph, id: str) -> Graph:
     sources = [graph.links.get(port) for port in ports]
     if len(ports) < 2 or sources == [None, None]:
         raise GraphError(
-            f"node '{id}' has fewer than two inputs to swap" if len(ports) < 2 else f"nothing is linked to '{id}'"
+            translate("node '{id}' has fewer than two inputs to swap", id=id)
+            if len(ports) < 2
+            else translate("nothing is linked to '{id}'", id=id)
         )
     routes = [dots_of(graph, port) for port in ports]
     after = cut_links(graph, [port for port in ports if port in graph.links])
@@ -231,4 +249,4 @@ def _list_linked_inputs(graph: Graph, id: str) -> list[str]:
 
 
 def _explain_refusal(graph: Graph, source: Port, ports: list[Port]) -> str:
-    return f": {why_not_linkable(graph, source, ports[0])}" if ports else ": it has none"
+    return f": {why_not_linkable(graph, source, ports[0])}" if ports else translate(": it has none")

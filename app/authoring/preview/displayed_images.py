@@ -13,6 +13,7 @@ from ...errors import InputError
 from ...graph import Port
 from ...inputs.default_view import PictureEncodings, choose_default_view
 from ...renderer import DeviceTexture, Runner, TextureLease
+from ...renderer.device import PixelRect
 from .frame_cache import FrameImage
 from .request import PreviewRequest, pixel_kind
 from .visible_region import PictureRegion
@@ -22,12 +23,14 @@ from .visible_region import PictureRegion
 class DisplayedImage:
     """A finished picture: it stays as it is until another takes its place.
 
-    `texture` is scene-linear. It may be a part of the picture: from pixel `start` on.
+    `texture` is scene-linear. It may be a part of the picture, from pixel `start` on, or go on beyond the frame on all
+    sides: then it starts below 0.
     """
 
     port: Port
     texture: DeviceTexture
     size: Size
+    """The size of the frame."""
     full_size: Size
     """The size of the whole picture at scale 1."""
     scale: float
@@ -41,14 +44,29 @@ class DisplayedImage:
     default_view: str = ""
     """The view that suits it where nobody names one, as `choose_default_view` says."""
 
+    pixel_aspect: float = 1.0
+    """The width of a pixel over its height."""
+
     @property
     def partial(self) -> bool:
-        """True if the texture is only a part of the picture."""
-        return self.texture.size != self.size
+        """True if the texture lacks some of the frame."""
+        return self.part[2:] != self.size
+
+    @property
+    def reaches_beyond(self) -> bool:
+        """True if there are pixels around the frame."""
+        return self.part[2:] != self.texture.size
+
+    @property
+    def part(self) -> PixelRect:
+        """The pixels of the texture that lie in the frame, as x, y, width, height."""
+        (x, y), held = self.start, self.texture.size
+        left, top = max(-x, 0), max(-y, 0)
+        return left, top, min(held[0], self.size[0] - x) - left, min(held[1], self.size[1] - y) - top
 
     @property
     def share(self) -> float:
-        """The area of the texture as a fraction of the picture."""
+        """The area of the texture as a fraction of the frame."""
         width, height = self.texture.size
         return width * height / (self.size[0] * self.size[1])
 
@@ -85,7 +103,7 @@ class DisplayedImages:
     def show(self, name: str, port: Port, request: PreviewRequest, face: FrameImage) -> None:
         """Set the picture of a panel."""
         surface, before = face.surface, self._pictures.get(name)
-        self._pictures[name] = self._lease_image(before, port, request, face, surface.size)
+        self._pictures[name] = self._lease_image(before, port, request, face, surface.frame_size)
         _drop(before)
         _drop(self._parts.pop(name, None))
 
@@ -126,6 +144,7 @@ class DisplayedImages:
                 request.frame,
                 surface.window.start if surface.window else (0, 0),
                 face.default_view,
+                surface.pixel_aspect,
             ),
             lease,
         )
@@ -140,7 +159,7 @@ class DisplayedImages:
     def _find_full_size(self, port: Port, request: PreviewRequest, plan: Plan, size: Size) -> Size:
         """The size at scale 1 of what was rounded at this one: as before, or that of a picture or the canvas."""
         candidates = [self._full_sizes.get(port), request.size, request.graph.settings.size]
-        candidates += [plan.surfaces[upload.surface].size for upload in plan.uploads]
+        candidates += [plan.surfaces[upload.surface].frame_size for upload in plan.uploads]
         full_size = (round(size[0] / request.scale), round(size[1] / request.scale))
         for full in candidates:
             if full and scale_size(full, request.scale) == size:

@@ -13,6 +13,7 @@ from ...errors import DeviceError, HalationError
 from ...export.surface_picture import SurfacePicture, picture_surface
 from ...graph import INPUTS, OUTPUTS
 from ...inputs.default_view import choose_default_view
+from ...language.translation import translate
 from ...renderer import Renderer
 from .request import PreviewRequest
 
@@ -99,7 +100,7 @@ class PassPictures:
         renderer.library = self._main.library
         plan = renderer.compile(request.graph, request.render_request({name: port}, request.frame))
         if plan.tiling is not None:
-            raise DeviceError(f"{plan.tiling.why}: look at a smaller proxy")
+            raise DeviceError(translate("{why}: look at a smaller proxy", why=plan.tiling.why))
         output = request.graph.outputs.get(port.socket) if port.node == OUTPUTS else None
         view = (output.view if output else "") or choose_default_view(plan, plan.outputs[name], renderer.pictures)
         passes = [

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from ...compiler import Plan
 from ...errors import DeviceError, HalationError
 from ...graph import Port
+from ...language.translation import translate
 from ...renderer import FrameRenderer, Renderer, Run
 from .request import PreviewRequest
 from .visible_region import PictureRegion, VisibleRegion, find_visible_part
@@ -134,5 +135,5 @@ def begin_visible_part(renderer: Renderer, request: PreviewRequest, glimpse: Vis
 def _check_displayable(plan: Plan) -> Plan:
     """A plan whose pictures can be shown. Raises DeviceError for one that can only be rendered to files."""
     if plan.tiling is not None:
-        raise DeviceError(f"{plan.tiling.why}: look at a smaller proxy, or render it to a file")
+        raise DeviceError(translate("{why}: look at a smaller proxy, or render it to a file", why=plan.tiling.why))
     return plan

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Set
 from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -60,9 +60,8 @@ class Preview:
         self.thumbnailing = True
         self.ahead: int | None = None
         self.glimpse: VisibleRegion | None = None
-        self.patience = PATIENCE
         self.clock: Callable[[], float] = time.perf_counter
-        self.seconds = 0.0
+        self.patience, self.seconds = PATIENCE, 0.0
         self._caches: list[FrameCache] = []
 
     # --- what the editor says ----------------------------------------------------------------------------------------
@@ -76,10 +75,11 @@ class Preview:
         scale: float = 1.0,
         frame: int = 1,
         size: Size | None = None,
+        whole: Set[str] = frozenset(),
     ) -> None:
-        """Say what panels want to show, by their names. Costs nothing if it is the same as before."""
+        """Say what panels want to show, by their names; those in `whole` beyond the frame. The same again is free."""
         before = self._request
-        request = PreviewRequest(graph, dict(ports), dict(bindings or {}), scale, frame, size)
+        request = PreviewRequest(graph, dict(ports), dict(bindings or {}), scale, frame, size, whole=whole)
         if before is not None:
             if graph is self._seen and before.wants_same_pixels(replace(request, graph=before.graph)):
                 return
@@ -385,7 +385,7 @@ class Preview:
         request, faces = job.request, dict[str, FrameImage]()
         for name, port in job.ports.items():
             surface = plan.surfaces[plan.outputs[name]]
-            faces[name] = self._images.describe(name, port, request, plan, surface.size)
+            faces[name] = self._images.describe(name, port, request, plan, surface.frame_size)
             if not job.ahead:
                 self._images.show(name, port, request, faces[name])
         request.frame_cache.add_frame(job.frame, faces, self.renderer, work.request.frame)

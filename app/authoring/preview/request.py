@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass, field, replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
@@ -35,16 +35,18 @@ class PreviewRequest:
     """What each node depends on, in this graph or in an earlier one."""
     frame_cache: FrameCache = field(default_factory=FrameCache)
     """The cached frames of this graph."""
+    whole: Set[str] = frozenset()
+    """The panels that show pixels beyond the frame as well."""
 
     def render_request(self, ports: Mapping[str, Port], frame: int, region: Region | None = None) -> RenderRequest:
         """The request as the renderer takes it."""
-        return RenderRequest(self.bindings, ports, self.size, self.scale, frame, region=region)
+        whole = frozenset(self.whole & ports.keys())
+        return RenderRequest(self.bindings, ports, self.size, self.scale, frame, region=region, whole=whole)
 
     def has_same_frames(self, before: PreviewRequest) -> bool:
         """True if every frame shows the same: the graphs may differ in what nothing reads."""
         return (
-            self.ports == before.ports
-            and self.scale == before.scale
+            (self.ports, self.scale, self.whole) == (before.ports, before.scale, before.whole)
             and replace(self, frame=before.frame).has_same_outside(before)
             and shows_same_pictures(before.graph, self.graph, self.ports.values())
         )
@@ -52,8 +54,7 @@ class PreviewRequest:
     def wants_same_pixels(self, request: PreviewRequest) -> bool:
         """True if both requests give the same pixels; layout does not matter."""
         return (
-            self.ports == request.ports
-            and self.scale == request.scale
+            (self.ports, self.scale, self.whole) == (request.ports, request.scale, request.whole)
             and self.has_same_outside(request)
             and (self.graph is request.graph or _pixel_facts(self.graph) == _pixel_facts(request.graph))
         )

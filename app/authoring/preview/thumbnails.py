@@ -15,6 +15,7 @@ from .color_fallback import ColorFallback
 from .request import PreviewRequest, canvas_path, pixel_kind
 
 LARGEST = (160, 90)
+"""The largest thumbnail: nearly as wide as a node on the canvas, in 16:9."""
 RANGE_WIDTH = 64
 """The width of the picture on which the range of a field is measured: small enough to read it back every time."""
 
@@ -28,6 +29,9 @@ class ThumbnailSource:
     kind: Kind
     channels: int
     mark: object
+    size: tuple[int, int]
+    start: tuple[int, int]
+    """The pixel of the frame with which the texture begins: below 0 if it goes on beyond the frame."""
 
 
 @dataclass(frozen=True)
@@ -38,11 +42,11 @@ class _DisplaySource:
     full_size: tuple[int, int]
     channels: int
     key: str
-    start: tuple[int, int] = (0, 0)
+    start: tuple[int, int]
 
     @property
     def size(self) -> tuple[int, int]:
-        return self.texture.size
+        return self.full_size
 
 
 @dataclass(frozen=True)
@@ -58,7 +62,10 @@ def list_thumbnail_sources(request: PreviewRequest, plan: Plan) -> dict[str, Thu
     for port, number in plan.results.items():
         path, surface = canvas_path(port), plan.surfaces[number]
         kind = pixel_kind(request.graph, port, surface.channels)
-        sources.setdefault(path, ThumbnailSource(path, surface.key, kind, surface.channels, request.node_mark(path)))
+        start, mark = surface.window.start if surface.window else (0, 0), request.node_mark(path)
+        sources.setdefault(
+            path, ThumbnailSource(path, surface.key, kind, surface.channels, mark, surface.frame_size, start)
+        )
     return sources
 
 
@@ -96,7 +103,7 @@ class Thumbnails:
         texture = self._renderer.runner.find_texture(subject.key)
         if texture is None:
             return
-        source = _DisplaySource(texture.handle, texture.handle.size, subject.channels, subject.key)
+        source = _DisplaySource(texture.handle, subject.size, subject.channels, subject.key, subject.start)
         width, height = source.full_size
         zoom = min(LARGEST[0] / width, LARGEST[1] / height, 1.0)
         size = scale_size(source.full_size, zoom)

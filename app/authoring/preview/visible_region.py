@@ -86,7 +86,7 @@ def find_visible_part(
     )
     surfaces = [plan.surfaces[number] for number in plan.outputs.values()]
     size = scale_size(glimpse.picture, request.scale)
-    if plan.memories or plan.tiling is not None or any(surface.size != size for surface in surfaces):
+    if plan.memories or plan.tiling is not None or any(surface.frame_size != size for surface in surfaces):
         return None
     region = None if all(surface.key in textures for surface in surfaces) else glimpse.region(size)
     return region and PictureRegion(region, size)

@@ -22,6 +22,7 @@ from ... import document
 from ...document.disk import read_text
 from ...errors import DocumentError, HalationError, OutputError
 from ...graph import Graph
+from ...language.translation import translate
 from ...resources.atomic_write import find_temporary_files, write_text_atomically
 from ...resources.sandbox import UNRESTRICTED, Sandbox
 from .claims import DocumentClaim
@@ -29,6 +30,9 @@ from .file_locks import is_held, lock
 
 FIRST = 1.0
 """Seconds from the first change to the first write: a crash soon after the start loses little."""
+
+USUAL_INTERVAL = 5.0
+"""Seconds between writes, half of what may be lost. Chosen by judgement."""
 
 LONGEST = 9.0
 """Seconds between writes at most: with the time that writing takes, what is kept is never older than ten."""
@@ -65,7 +69,7 @@ class RecoveredWork:
     @property
     def title(self) -> str:
         """The title of the work: the name of its file."""
-        return self.path.name if self.path else "Untitled"
+        return self.path.name if self.path else translate("Untitled")
 
     def load(self, sandbox: Sandbox) -> Graph:
         """The graph, finding its pictures where the original did. Raises DocumentError."""
@@ -82,7 +86,7 @@ class RecoveredWork:
 class RecoveryFile:
     """Keeps the newest unsaved graph of one editor in `folder`/recovery, every `interval` seconds at most."""
 
-    def __init__(self, folder: Path, interval: float = 5.0) -> None:
+    def __init__(self, folder: Path, interval: float = USUAL_INTERVAL) -> None:
         self.folder = folder / "recovery"
         self.interval = min(interval, LONGEST)
         self.fault = ""
@@ -103,7 +107,11 @@ class RecoveryFile:
             self._claim = DocumentClaim(self._file)
             self._thread.start()
         except OSError as fault:
-            self.fault = f"unsaved work cannot be kept in {self.folder} ({fault.strerror}): save often"
+            self.fault = translate(
+                "unsaved work cannot be kept in {folder} ({reason}): save often",
+                folder=self.folder,
+                reason=fault.strerror,
+            )
 
     def claim(self, path: Path | None) -> None:
         """Say which file this editor edits; other editors then know."""
@@ -114,7 +122,9 @@ class RecoveryFile:
         """A sentence if another editor has the same file open, else ""."""
         if self._claim is None or not self._claim.is_shared():
             return ""
-        return "another editor has this document open too: the last one to save overwrites what the other saved"
+        return translate(
+            "another editor has this document open too: the last one to save overwrites what the other saved"
+        )
 
     def note(self, graph: Graph, path: Path | None, dirty: bool) -> None:
         """Note the current document; costs nothing if nothing changed."""
@@ -204,9 +214,13 @@ class RecoveryFile:
             for recovered in adopted:
                 recovered.discard()
         except HalationError as fault:
-            return f"unsaved work is not kept: {fault}"
+            return translate("unsaved work is not kept: {fault}", fault=fault)
         except Exception as fault:
-            return f"unsaved work is not kept because of a fault in Halation ({type(fault).__name__}: {fault})"
+            return translate(
+                "unsaved work is not kept because of a fault in Halation ({kind}: {fault})",
+                kind=type(fault).__name__,
+                fault=fault,
+            )
         with self._change:
             self._adopted = self._adopted[len(adopted) :]
         return ""
@@ -234,7 +248,9 @@ def _read(file: Path) -> RecoveredWork:
     try:
         record = msgspec.json.decode(read_text(file, sandbox=UNRESTRICTED), type=_Record)
     except (DocumentError, msgspec.MsgspecError, UnicodeDecodeError) as fault:
-        return RecoveredWork(file, fault=f"{file}: this recovered work cannot be read ({fault})")
+        return RecoveredWork(
+            file, fault=translate("{file}: this recovered work cannot be read ({fault})", file=file, fault=fault)
+        )
     path = Path(record.path) if record.path else None
     return RecoveredWork(
         file, path, record.folder, record.time, record.version, record.nodes, bytes(record.graph).decode()
@@ -292,4 +308,4 @@ def _remove(path: Path) -> None:
     try:
         path.unlink(missing_ok=True)
     except OSError as fault:
-        raise OutputError(f"{path}: cannot be removed ({fault.strerror})") from None
+        raise OutputError(translate("{path}: cannot be removed ({reason})", path=path, reason=fault.strerror)) from None

@@ -12,11 +12,13 @@ from msgspec.structs import replace
 from ... import document
 from ...errors import UsageError
 from ...graph import Graph
+from ...language.translation import translate
 from ...renderer.jobs.render_job import RenderJob
 from ...resources.sandbox import Sandbox
+from .queued_files import QueuedFiles, list_entries
 from .queued_render import QueuedJob, QueuedRender, RenderState
 
-__all__ = ["QueuedRender", "RenderJob", "RenderQueue", "RenderState"]
+__all__ = ["QueuedFiles", "QueuedRender", "RenderJob", "RenderQueue", "RenderState"]
 
 
 class RenderQueue:
@@ -50,34 +52,37 @@ class RenderQueue:
         destinations: Sequence[tuple[str, Path]],
         bindings: Mapping[str, object] | None = None,
         options: RenderJob | None = None,
+        *,
+        files: QueuedFiles | None = None,
+        cluster: str = "",
     ) -> QueuedRender:
         """Render the graph as it is now, saved or not, to pairs of an output's name and a file; "" is all outputs.
 
         `bindings` are files for graph inputs; `options` say how to render and write, its graph, inputs and destinations
-        are replaced. It waits for those before it. Raises UsageError, and GraphError for what JSON cannot hold.
+        are replaced. With `files` it is rendered once for each of them, which {stem} and the like in destinations stand
+        for. `cluster` is the address of the workers that render, "" for this machine alone. It waits for those before
+        it. Raises UsageError, and GraphError for what JSON cannot hold.
         """
         if not destinations:
-            raise UsageError("no file to write to: choose a file")
-        inputs: dict[str, str] = {}
-        for name, item in (bindings or {}).items():
-            if not isinstance(item, str | Path):
-                raise UsageError(f"input '{name}' is a picture in memory, which renders cannot read: save it to a file")
-            inputs[name] = os.path.abspath(item)  # noqa: PTH100 - a layer may follow the path
+            raise UsageError(translate("no file to write to: choose a file"))
+        inputs = _list_inputs(bindings or {})
+        entries = list_entries(graph, files, destinations, inputs, self._sandbox) if files else ()
         order = replace(
             options or RenderJob(sandbox=self._sandbox),
             graph="-",
             document=document.dumps(graph),
-            inputs=inputs,
+            inputs={} if files else inputs,
+            entries=entries,
             destinations=tuple((name, str(path.absolute())) for name, path in destinations),
         )
-        return self._queue(QueuedJob(order, graph))
+        return self._queue(QueuedJob(order, graph, cluster))
 
     def resume(self, export: QueuedRender) -> QueuedRender:
         """Continue a render that has ended: frames that are up to date are skipped."""
         if export not in self.all or export in self.unfinished:
             return export
         job = export.job
-        return self._queue(QueuedJob(replace(job.order, resume=True), job.graph), export)
+        return self._queue(QueuedJob(replace(job.order, resume=True), job.graph, job.cluster), export)
 
     def move(self, export: QueuedRender, by: int) -> None:
         """Move a waiting render up or down in the queue."""
@@ -119,3 +124,17 @@ class RenderQueue:
         with self._lock:
             while not self._closed and self.waiting and len(self.running) < self.at_once:
                 self.waiting[0].begin()
+
+
+def _list_inputs(bindings: Mapping[str, object]) -> dict[str, str]:
+    """The files of inputs by name, as absolute paths. Raises UsageError for a picture in memory."""
+    inputs: dict[str, str] = {}
+    for name, item in bindings.items():
+        if not isinstance(item, str | Path):
+            raise UsageError(
+                translate(
+                    "input '{name}' is a picture in memory, which renders cannot read: save it to a file", name=name
+                )
+            )
+        inputs[name] = os.path.abspath(item)  # noqa: PTH100 - a layer may follow the path
+    return inputs

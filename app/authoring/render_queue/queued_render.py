@@ -10,21 +10,26 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
 from ...graph import Graph
+from ...language.translation import translate
 from ...renderer.jobs.render_job import RenderJob, worker_command
-from ...resources.atomic_write import temporary_prefix
+from ...resources.atomic_write import remove_files_of
 
 RenderState = Literal["waiting", "running", "done", "failed", "cancelled"]
 
 _PATIENCE = 0.6
 """Seconds that a render may take to stop by itself and remove its unfinished files; `cancel` promises a second."""
 
+_CLUSTER_PATIENCE = 1.5
+"""The same where workers elsewhere have to be told; `cancel` promises two seconds then."""
+
 _MOST_NOTES = 200
+"""Lines of a render's log that are kept, the newest: more than anybody reads. Chosen by judgement."""
 
 _MIN_DONE_FOR_ESTIMATE = 0.3
 """The fraction of the first frame that must be done before the remaining time is shown: earlier estimates jump."""
@@ -32,25 +37,35 @@ _MIN_DONE_FOR_ESTIMATE = 0.3
 
 @dataclass(frozen=True)
 class QueuedJob:
-    """The job that is sent to the process, and its graph; kept to start it again."""
+    """The job that is sent to the process, and its graph; kept to start it again.
+
+    `cluster` is the address of the workers that render, "" for this machine alone.
+    """
 
     order: RenderJob
     graph: Graph
+    cluster: str = ""
+
+    @property
+    def command(self) -> list[str]:
+        """The command of the process."""
+        return [*worker_command(), *(("--on", self.cluster) if self.cluster else ())]
 
 
 class QueuedRender:
     """One render: it waits, runs, and ends. Everything may be read at any time.
 
-    `done` and `total` count frames, `kept` those that were there already; `frame` is the one under way, `passes` how
-    many of its passes are through and of how many, `node` what was computed last. `sentence` says why it failed,
-    `notes` what else there is to know, `written` the files that are there now.
+    `done` and `total` count frames, or files where there are many, `kept` those that were there already; `frame` is the
+    one under way, `passes` how many of its passes are through and of how many, `node` what was computed last. `faulty`
+    counts the files that failed, `workers` the workers of a cluster. `sentence` says why it failed, `notes` what else
+    there is to know, `written` the files that are there now.
     """
 
     def __init__(self, job: QueuedJob, ended: Callable[[], object] = bool) -> None:
         self.job = job
         self.state: RenderState = "waiting"
-        self.done = self.reused = 0
-        self.total = max(len(job.order.frames), 1)
+        self.done = self.reused = self.faulty = self.workers = 0
+        self.total = max(len(job.order.entries or job.order.frames), 1)
         self.frame: int | None = None
         self.passes = (0, 0)
         self.node = self.failure = ""
@@ -66,8 +81,20 @@ class QueuedRender:
 
     @property
     def destinations(self) -> tuple[tuple[str, Path], ...]:
-        """The names of outputs, and their files."""
+        """The names of outputs, and their files; with {stem} or the like where there are many."""
         return self.job.order.files
+
+    @property
+    def has_many_files(self) -> bool:
+        """True if files are counted, and not frames."""
+        return bool(self.job.order.entries)
+
+    @property
+    def folder(self) -> Path:
+        """The folder of the files that are written; of many, that of the last one."""
+        if not self.has_many_files:
+            return self.destinations[0][1].parent
+        return (self.written_files or (Path(self.job.order.entries[0].destinations[0][1]),))[-1].parent
 
     @property
     def fraction(self) -> float:
@@ -99,7 +126,7 @@ class QueuedRender:
             self.started_at = time.monotonic()
             try:
                 self._process = subprocess.Popen(
-                    worker_command(),
+                    self.job.command,
                     cwd=self.job.graph.folder or ".",
                     stdin=subprocess.PIPE,
                     stdout=subprocess.PIPE,
@@ -110,14 +137,21 @@ class QueuedRender:
                     start_new_session=True,
                 )
             except OSError as fault:
-                self.failure = f"the render process cannot be started: {fault.filename or ''} {fault.strerror}"
+                self.failure = translate(
+                    "the render process cannot be started: {program} {reason}",
+                    program=fault.filename or "",
+                    reason=fault.strerror,
+                )
                 self._finish("failed")
                 return
             self.state = "running"
         threading.Thread(target=self._run, args=(self._process,), name="export", daemon=True).start()
 
     def cancel(self) -> None:
-        """Stop the process within a second; finished frames are kept. Nothing happens if it has ended."""
+        """Stop the process within a second, or two with a cluster; finished frames are kept.
+
+        Nothing happens if it has ended.
+        """
         with self._lock:
             if self.state == "waiting":
                 self._finish("cancelled")
@@ -127,7 +161,8 @@ class QueuedRender:
         # A process that is killed cannot remove its unfinished files, so it gets a moment to stop.
         if sys.platform != "win32":
             self._process.terminate()
-        deadline = threading.Timer(_PATIENCE if sys.platform != "win32" else 0.0, self._kill)
+        patience = _CLUSTER_PATIENCE if self.job.cluster else _PATIENCE
+        deadline = threading.Timer(patience if sys.platform != "win32" else 0.0, self._kill)
         deadline.daemon = True
         deadline.start()
 
@@ -142,7 +177,9 @@ class QueuedRender:
             self._read_output(running)
         finally:
             if not self._has_ended.is_set():
-                self.failure = "the render process sent an invalid message: use 'halation render' to see its output"
+                self.failure = translate(
+                    "the render process sent an invalid message: use 'halation render' to see its output"
+                )
                 self._finish("failed")
             self._report_end()
 
@@ -153,11 +190,15 @@ class QueuedRender:
                 process.stdin.write(self.job.order.to_json())
             with contextlib.suppress(OSError):
                 process.stdin.close()
+            # A report of thousands of frames is longer than a pipe holds, so it is read meanwhile.
+            outputs, report = list[str](), process.stdout
+            reader = threading.Thread(target=lambda: outputs.append(report.read()), name="report", daemon=True)
+            reader.start()
             for line in process.stderr:
                 self._read_progress(line.rstrip())
-            output = process.stdout.read()
+            reader.join()
         self._remove_partial_files(running.pid)
-        self._end(running.returncode, output)
+        self._end(running.returncode, "".join(outputs))
 
     def _read_progress(self, line: str) -> None:
         """Read one line of progress from the process."""
@@ -167,9 +208,7 @@ class QueuedRender:
                 self._helpers = tuple(map(int, event["processes"]))
                 self._first_pass_at = time.monotonic()
             elif "done" in event:
-                self.written_files = (*self.written_files, *map(Path, event["written"]))
-                self.reused += bool(event["kept"])
-                self.done, self.total, self.passes = int(event["done"]), int(event["frames"]), (0, 0)
+                self._note_done(event)
             else:
                 passes = int(event["pass"]), int(event["passes"])
                 self.frame, self.node, self.passes = int(event["frame"]), str(event["nodes"][-1]), passes
@@ -177,6 +216,15 @@ class QueuedRender:
             return
         if line:
             self.notes = (*self.notes, line.removeprefix("-: "))[-_MOST_NOTES:]
+
+    def _note_done(self, event: Mapping[str, Any]) -> None:
+        """A frame is finished, or one of many files, which may have failed."""
+        self.written_files = (*self.written_files, *map(Path, event["written"]))
+        self.reused += bool(event["kept"])
+        self.faulty += "error" in event
+        self.done, self.workers, self.passes = int(event["done"]), int(event.get("workers", 0)), (0, 0)
+        self.total = int(event["files"]) if "files" in event else int(event["frames"])
+        self._first_pass_at = self._first_pass_at or self.started_at
 
     def _end(self, code: int, output: str) -> None:
         report: dict[str, Any] = {}
@@ -187,9 +235,18 @@ class QueuedRender:
             self._finish("done")
         elif self._cancelled:
             self._finish("cancelled")
+        elif code > 0 and self.faulty:
+            self.failure = translate("{count} of {total} files failed", count=self.faulty, total=self.total)
+            self._finish("failed")
         else:
-            fault = report.get("error", {}).get("message") or (self.notes[-1] if self.notes else "it gave no reason")
-            self.failure = str(fault).removeprefix("-: ") if code > 0 else f"the process was ended by signal {-code}"
+            fault = report.get("error", {}).get("message") or (
+                self.notes[-1] if self.notes else translate("it gave no reason")
+            )
+            self.failure = (
+                str(fault).removeprefix("-: ")
+                if code > 0
+                else translate("the process was ended by signal {signal}", signal=-code)
+            )
             self._finish("failed")
 
     def _finish(self, state: RenderState) -> None:
@@ -205,11 +262,9 @@ class QueuedRender:
 
     def _remove_partial_files(self, process: int) -> None:
         """Remove the unfinished files of killed processes."""
-        for folder in {Path(os.path.realpath(path)).parent for _, path in self.destinations}:
-            for number in (process, *self._helpers):
-                for part in folder.glob(f"{temporary_prefix(number)}*"):
-                    with contextlib.suppress(OSError):
-                        part.unlink()
+        order = self.job.order
+        destinations = [pair for entry in order.entries for pair in entry.destinations] or order.destinations
+        remove_files_of((process, *self._helpers), (path for _, path in destinations))
 
     @property
     def _partial_frame(self) -> float:

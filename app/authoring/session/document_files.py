@@ -11,6 +11,7 @@ from halation.nodes import REFERENCE_HEIGHT
 from ...document import load, loads, save
 from ...errors import UsageError
 from ...graph import Graph, Output, Port, Settings, signature
+from ...language.translation import translate
 from ...renderer.provenance.file_finder import load_graph_of_picture
 from ..commands.adding import DropFiles
 from ..commands.grouping import LinkGroup
@@ -89,7 +90,7 @@ class DocumentFiles:
     def save(self) -> None:
         """Save to the file that was opened. Raises UsageError if there is none."""
         if self._session.path is None:
-            raise UsageError("this document has no file yet: choose one with Save As")
+            raise UsageError(translate("this document has no file yet: choose one with Save As"))
         self.save_as(self._session.path)
 
     def save_as(self, path: str | Path) -> None:
@@ -107,11 +108,11 @@ class DocumentFiles:
 
     def revert(self) -> None:
         """Go back to what was saved; this can be undone."""
-        self._read_again("Revert")
+        self._read_again(translate("Revert"))
 
     def reload(self) -> None:
         """Read the file again after another program changed it; this can be undone."""
-        self._read_again("Reload")
+        self._read_again(translate("Reload"))
 
     def reload_groups(self) -> None:
         """Read the files of all groups again; this is no step. Raises DocumentError, and then nothing changes."""
@@ -130,7 +131,9 @@ class DocumentFiles:
         body = paths.rebase_paths(folding.find_group(session.graph, id).body(), str(target.parent))
         paths.check_target(body, target)
         if session.path and session.path.resolve() == target.resolve():
-            raise UsageError(f"{target}: this is the file of the document itself: choose another name")
+            raise UsageError(
+                translate("{target}: this is the file of the document itself: choose another name", target=target)
+            )
         save(body, target, sandbox=session.sandbox)
         if link:
             session.apply(LinkGroup(id, target, body))
@@ -145,7 +148,7 @@ class DocumentFiles:
     def _read_again(self, label: str) -> None:
         session = self._session
         if session.path is None:
-            raise UsageError("this document has no file to read again")
+            raise UsageError(translate("this document has no file to read again"))
         root = self._load(session.path)
         session.seal()
         session.saved = root

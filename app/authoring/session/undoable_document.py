@@ -12,6 +12,7 @@ from typing import TypeVar
 
 from ...errors import GraphError
 from ...graph import INPUTS, Graph
+from ...language.translation import translate
 from ..commands.command import EditCommand, Edited
 from ..edits import elements, folding, layout, routes
 from ..edits.element_id import NO_ELEMENT, ElementId
@@ -99,7 +100,7 @@ class UndoableDocument(OpenDocument):
     def bind(self, name: str, path: str | None) -> None:
         """Bind an input of the document to a file (`path` or `path:layer`), or to none; this is not saved."""
         if name not in self.root.inputs:
-            raise GraphError(f"the graph has no input '{name}' to bind a file to")
+            raise GraphError(translate("the graph has no input '{name}' to bind a file to", name=name))
         self._bound.pop(name, None)
         if path:
             self._bound[name] = path

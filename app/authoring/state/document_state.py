@@ -12,6 +12,7 @@ from halation.nodes import Node, catalogue
 
 from ...errors import GraphError
 from ...graph import Graph, Problem
+from ...language.translation import translate
 from ...resources.sandbox import Sandbox
 from ..edits import elements, folding, layout
 from ..edits.element_id import ElementId
@@ -89,7 +90,7 @@ class DocumentState:
     def position(self, element: ElementId) -> Place:
         """Where an element lies. Raises GraphError if there is none."""
         if element not in self.positions:
-            raise GraphError(f"there is no '{element}' on the canvas")
+            raise GraphError(translate("there is no '{element}' on the canvas", element=element))
         return self.positions[element]
 
     @property
@@ -112,7 +113,13 @@ class DocumentState:
         """Raise GraphError within a group that comes from another file."""
         if borrowed := folding.find_borrowed_group(self.root, self.place):
             group, file = borrowed[0][-1], borrowed[1]
-            raise GraphError(f"group '{group}' comes from the file '{file}': make it local first, or open that file")
+            raise GraphError(
+                translate(
+                    "group '{group}' comes from the file '{file}': make it local first, or open that file",
+                    group=group,
+                    file=file,
+                )
+            )
 
     @property
     def dirty(self) -> bool:

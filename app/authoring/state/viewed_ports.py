@@ -7,6 +7,7 @@ from typing import Literal
 
 from ...errors import GraphError
 from ...graph import INPUTS, Port
+from ...language.translation import translate
 from ..edits import folding
 from ..edits.element_id import ElementId
 from ..edits.folding import GroupPath
@@ -56,7 +57,7 @@ class ViewedPorts:
     def show(self, port: Port, side: Side = "A") -> None:
         """Show an output of a node, or an end of the graph, on one side of the viewer."""
         if not is_viewable(self._document.graph, port):
-            raise GraphError(f"there is no '{port}' to show")
+            raise GraphError(translate("there is no '{port}' to show", port=port))
         self._chosen[self._document.place, side] = (port,)
         self._document.revision += 1
 
@@ -67,7 +68,7 @@ class ViewedPorts:
             return
         ports = output_ports(self._document.graph, element)
         if not ports:
-            raise GraphError(f"node '{element}' has no output to show")
+            raise GraphError(translate("node '{element}' has no output to show", element=element))
         port = self.find_port(side) if (self._document.place, side) in self._chosen else None
         self.show(ports[(ports.index(port) + 1) % len(ports)] if port in ports else ports[0], side)
 
@@ -84,7 +85,9 @@ class ViewedPorts:
     def recall(self, number: int, side: Side = "A") -> None:
         """Show the port that a number key is assigned to."""
         if number not in self.numbered_ports:
-            raise GraphError(f"nothing is assigned to viewer {number}: select a node and assign it first")
+            raise GraphError(
+                translate("nothing is assigned to viewer {number}: select a node and assign it first", number=number)
+            )
         self.show(self.numbered_ports[number], side)
 
     def follow_rename(self, old: ElementId, new: ElementId) -> None:

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
+from ...language.translation import translate, translate_plural
 from ..shared.dialogs import Browse, Question
 from ..theme.style import ui_scale
 from ..toolkit.buttons import align_right, main_button, quiet_button, width_of_buttons
 from ..toolkit.dialogs import backdrop, dialog, escape_pressed
 from ..toolkit.keys import is_enter_pressed
+from ..toolkit.labels import make_label, translate_label
 from ..toolkit.places import record
 from ..toolkit.words import cut_middle, draw_dim, draw_wrapped, font, tip
 from .browsing import Browsing, FolderMemory, begin_browsing, find_own_folder
@@ -95,7 +97,7 @@ class FileBrowser:
     def _draw_path_bar(self, browsing: Browsing) -> None:
         with font(self._context, "bold", 18.0):
             imgui.text_unformatted(browsing.browse.title)
-        if quiet_button(self._context, icons.ICON_FA_ARROW_UP, "folder up", "Parent folder (Backspace)"):
+        if quiet_button(self._context, icons.ICON_FA_ARROW_UP, "folder up", translate("Parent folder (Backspace)")):
             self._go_to(browsing, browsing.folder.parent)
         imgui.same_line()
         button_icons = (icons.ICON_FA_FOLDER_PLUS, icons.ICON_FA_EYE, icons.ICON_FA_LIST)
@@ -108,18 +110,24 @@ class FileBrowser:
         if entered:
             self._open_typed_path(browsing)
         imgui.same_line()
-        if quiet_button(self._context, icons.ICON_FA_FOLDER_PLUS, "new folder", "New folder"):
+        if quiet_button(self._context, icons.ICON_FA_FOLDER_PLUS, "new folder", translate("New folder")):
             self._naming, self._new, self._focus = True, "", "folder"
         imgui.same_line()
         eye = icons.ICON_FA_EYE if browsing.hidden else icons.ICON_FA_EYE_SLASH
         if quiet_button(
-            self._context, eye, "hidden files", "Hide hidden files" if browsing.hidden else "Show hidden files"
+            self._context,
+            eye,
+            "hidden files",
+            translate("Hide hidden files") if browsing.hidden else translate("Show hidden files"),
         ):
             browsing.hidden = not browsing.hidden
         imgui.same_line()
         view_icon = icons.ICON_FA_LIST if self._as_grid else icons.ICON_FA_TABLE_CELLS_LARGE
         if quiet_button(
-            self._context, view_icon, "list or grid", "Show as a list" if self._as_grid else "Show thumbnails"
+            self._context,
+            view_icon,
+            "list or grid",
+            translate("Show as a list") if self._as_grid else translate("Show thumbnails"),
         ):
             self._as_grid = not self._as_grid
 
@@ -141,7 +149,7 @@ class FileBrowser:
         for index, place in enumerate(browsing.offered):
             room = imgui.get_content_region_avail().x - 30 * ui_scale()
             label = f"{PLACE_ICONS[place.kind]}  {cut_middle(place.title, room)}##{index}"
-            if imgui.selectable(label, place.path == browsing.folder)[0]:
+            if imgui.selectable(make_label(label, str(place.path)), place.path == browsing.folder)[0]:
                 self._go_to(browsing, place.path)
             tip(str(place.path))
             record(self._context, f"place {place.title}")
@@ -155,8 +163,12 @@ class FileBrowser:
             return
         items = browsing.items
         if not items:
-            nothing = "No file in this folder matches." if browsing.query else "This folder has no matching files."
-            draw_dim(self._context, "Reading..." if browsing.listing.busy else nothing)
+            nothing = (
+                translate("No file in this folder matches.")
+                if browsing.query
+                else translate("This folder has no matching files.")
+            )
+            draw_dim(self._context, translate("Reading...") if browsing.listing.busy else nothing)
             return
         shape = self._grid if self._as_grid and browsing.browse.purpose == "image" else self._table
         double_clicked = shape.draw(browsing)
@@ -170,7 +182,7 @@ class FileBrowser:
             self._focus = ""
         imgui.set_next_item_width(220 * ui_scale())
         entered, self._new = imgui.input_text_with_hint(
-            "##new", "Name of the new folder", self._new, int(imgui.InputTextFlags_.enter_returns_true)
+            "##new", translate("Name of the new folder"), self._new, int(imgui.InputTextFlags_.enter_returns_true)
         )
         record(self._context, "new folder name")
         self._elsewhere = True
@@ -212,13 +224,13 @@ class FileBrowser:
         if browsing.browse.saving:
             completes = partial(self._complete, browsing.name, browsing)
             changed, name = imgui.input_text_with_hint(
-                "##name", "Name of the file", browsing.name, _COMPLETES, completes
+                "##name", translate("Name of the file"), browsing.name, _COMPLETES, completes
             )
             if changed:
                 browsing.name, browsing.chosen = name, -1
         else:
             completes = partial(self._complete, browsing.query, browsing)
-            hint = "Type to find, or a path; Tab completes it"
+            hint = translate("Type to find, or a path; Tab completes it")
             changed, query = imgui.input_text_with_hint("##query", hint, browsing.query, _COMPLETES, completes)
             if changed:
                 browsing.search(query)
@@ -231,13 +243,17 @@ class FileBrowser:
         self._draw_buttons(browsing)
 
     def _draw_buttons(self, browsing: Browsing) -> None:
-        verb = "Save" if browsing.browse.saving else "Open"
+        verb = translate("Save") if browsing.browse.saving else translate("Open")
         target = browsing.target
         imgui.align_text_to_frame_padding()
-        counted = f"{len(browsing.items)} items" if target is None else cut_middle(str(target), 560 * ui_scale())
+        counted = (
+            translate_plural("{count} item", "{count} items", len(browsing.items))
+            if target is None
+            else cut_middle(str(target), 560 * ui_scale())
+        )
         draw_dim(self._context, counted)
-        align_right("Cancel", f"    {verb}    ")
-        if imgui.button("Cancel"):
+        align_right(translate("Cancel"), f"    {verb}    ")
+        if imgui.button(translate_label("Cancel")):
             self._context.dialogs.browse = None
         record(self._context, "cancel file")
         imgui.same_line()
@@ -262,9 +278,11 @@ class FileBrowser:
             answer()
             return
         self._context.dialogs.question = Question(
-            "Replace the file?",
-            f"{target.name} already exists in {target.parent.name or target.parent}.",
-            (("Replace", answer), ("Cancel", lambda: None)),
+            translate("Replace the file?"),
+            translate(
+                "{name} already exists in {folder}.", name=target.name, folder=target.parent.name or target.parent
+            ),
+            ((translate("Replace"), answer), (translate("Cancel"), lambda: None)),
         )
 
     def _answer(self, browsing: Browsing, target: object) -> None:

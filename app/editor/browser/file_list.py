@@ -10,6 +10,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from ..theme.style import u32, ui_scale
 from ..toolkit.buttons import outline
+from ..toolkit.labels import make_label, translate_label
 from ..toolkit.places import record
 from ..toolkit.textures import Textures, fit_picture
 from ..toolkit.thumbnails import FileThumbnails
@@ -40,9 +41,9 @@ class FileTable:
             return False
         scale, fixed = ui_scale(), imgui.TableColumnFlags_.width_fixed.value
         imgui.table_setup_scroll_freeze(0, 1)
-        imgui.table_setup_column("Name", imgui.TableColumnFlags_.width_stretch.value)
-        imgui.table_setup_column("Size", fixed, 84 * scale)
-        imgui.table_setup_column("Changed", fixed, 136 * scale)
+        imgui.table_setup_column(translate_label("Name"), imgui.TableColumnFlags_.width_stretch.value)
+        imgui.table_setup_column(translate_label("Size"), fixed, 84 * scale)
+        imgui.table_setup_column(translate_label("Changed"), fixed, 136 * scale)
         imgui.table_headers_row()
         _sort(browsing)
         items, double_clicked = browsing.items, False
@@ -65,7 +66,7 @@ class FileTable:
         room = imgui.get_content_region_avail().x - 26 * ui_scale()
         chosen = index == browsing.chosen
         double_clicked = False
-        if imgui.selectable(f"{icon}  {cut_middle(item.name, room)}##{index}", chosen, flags)[0]:
+        if imgui.selectable(make_label(f"{icon}  {cut_middle(item.name, room)}", str(index)), chosen, flags)[0]:
             browsing.choose(index)
             double_clicked = imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
         record(self._context, f"file {item.name}")

@@ -12,6 +12,7 @@ from threading import Thread
 from typing import Literal
 
 from ...errors import InputError
+from ...language.translation import translate
 from ..shared.fuzzy import match
 
 Order = Literal["name", "size", "time"]
@@ -134,7 +135,9 @@ def make_folder(parent: Path, name: str) -> Path:
     """Create a folder. Raises InputError."""
     name = name.strip()
     if not name or name in (".", "..") or set(name) & set('/\\:*?"<>|'):
-        raise InputError(f"'{name}' is not a valid name for a folder: use letters, digits and spaces")
+        raise InputError(
+            translate("'{name}' is not a valid name for a folder: use letters, digits and spaces", name=name)
+        )
     try:
         (parent / name).mkdir()
     except OSError as error:
@@ -165,10 +168,10 @@ def _natural(name: str) -> tuple[tuple[bool, int, str], ...]:
 
 def _reason(error: OSError) -> str:
     sentences = {
-        PermissionError: "permission denied: ask its owner, or choose another folder",
-        FileNotFoundError: "there is no such folder",
-        NotADirectoryError: "this is a file, not a folder",
-        FileExistsError: "a file or folder of this name already exists: choose another name",
+        PermissionError: translate("permission denied: ask its owner, or choose another folder"),
+        FileNotFoundError: translate("there is no such folder"),
+        NotADirectoryError: translate("this is a file, not a folder"),
+        FileExistsError: translate("a file or folder of this name already exists: choose another name"),
     }
     return next(
         (sentence for kind, sentence in sentences.items() if isinstance(error, kind)), error.strerror or str(error)

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+from ...language.translation import mark, translate
+
 PlaceKind = Literal["home", "document", "folder", "recent", "drive"]
 
 _MOUNTS = ("/media/", "/mnt/", "/run/media/", "/Volumes/")
@@ -35,11 +37,11 @@ def places(document: Path | None, recent: Iterable[Path], used: Iterable[Path]) 
 
 def _candidates(document: Path | None, recent: Iterable[Path], used: Iterable[Path]) -> Iterator[Place]:
     if document is not None:
-        yield Place("This document", document, "document")
+        yield Place(translate("This document"), document, "document")
     home = Path.home()
-    yield Place("Home", home, "home")
-    for name in ("Desktop", "Documents", "Pictures"):
-        yield Place(name, home / name, "folder")
+    yield Place(translate("Home"), home, "home")
+    for name in (mark("Desktop"), mark("Documents"), mark("Pictures")):
+        yield Place(translate(name), home / name, "folder")
     for drive in drives():
         yield Place(drive.name or str(drive), drive, "drive")
     for folder in (*used, *recent):

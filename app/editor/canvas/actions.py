@@ -21,6 +21,7 @@ from ...authoring.commands import (
     Ungroup,
 )
 from ...graph import Group
+from ...language.translation import translate
 from ..shared.action import Action
 from ..shared.dialogs import Browse
 from .pictures import reserve_pictures
@@ -69,7 +70,7 @@ def _save_group(context: CanvasContext) -> None:
     def save(path: Path) -> None:
         context.log.attempt(lambda: context.session.files.save_group(id, path.with_suffix(".json"), link=True))
 
-    context.dialogs.browse = Browse("Save the group as", "graph", save, saving=True, name=f"{id}.json")
+    context.dialogs.browse = Browse(translate("Save the group as"), "graph", save, saving=True, name=f"{id}.json")
 
 
 def _open_group(context: CanvasContext) -> None:

@@ -19,6 +19,7 @@ TEXT, SMALL, TITLE = 13.5, 12.0, 14.0
 """Font sizes in canvas units."""
 
 _MEASURED = 48.0
+"""The size at which widths of texts are measured: larger than what is drawn, so that rounding counts little."""
 
 DETAILS_FROM = 0.45
 """The zoom below which values and names of sockets are left out: a picture then fills the node."""

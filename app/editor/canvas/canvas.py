@@ -12,13 +12,13 @@ from ...authoring.edits.element_id import NO_ELEMENT, ElementId
 from ...authoring.edits.elements import entry
 from ...graph import Graph, Port
 from ..theme.style import ui_scale
-from ..toolkit.keys import display_shortcut
 from ..toolkit.words import show_tip
 from .brush import DETAILS_FROM, DrawContext, TextCache, make_canvas_colors
 from .crumbs import draw_crumbs
 from .frame import CanvasFrame
 from .geometry import Point, Rect, contains, find_bounds, fit_view, make_curve, make_transform, overlaps, reveal_rect
 from .gestures import Band, CutGesture, Idle, LinkGesture, MoveGesture, ResizeGesture, make_band_rect
+from .hints import explain_tool, hint_at_beginning
 from .layout import PICTURE
 from .legend import Legend
 from .live import LiveFields, has_live_widget
@@ -225,9 +225,7 @@ class Canvas:
         hot = self._hot = self._find_hot(frame, scene)
         facts = gather_look_facts(self._context, brush.ink, mouse.gesture, hot)
         if not session.graph.nodes:
-            keys = display_shortcut(self._context.actions.shortcut("node.add"))
-            hints = "An empty graph", f"{keys} adds a node", "Drop an image or a graph file here"
-            paint_hint(brush, frame.panel, hints)
+            paint_hint(brush, frame.panel, hint_at_beginning(self._context))
         visible = [box for box in scene.boxes.values() if overlaps(box.rect, _grow(brush.visible, 32.0))]
         for box in visible:
             if box.sort == "frame":
@@ -305,18 +303,17 @@ class Canvas:
             case _:
                 if mouse.hit.part == "edge":
                     across = set(mouse.hit.name) <= set("lr")
-                    both = len(mouse.hit.name) > 1
+                    is_corner = len(mouse.hit.name) > 1
                     cursor = (
                         imgui.MouseCursor_.resize_nwse
-                        if both
+                        if is_corner
                         else (imgui.MouseCursor_.resize_ew if across else imgui.MouseCursor_.resize_ns)
                     )
                     imgui.set_mouse_cursor(cursor)
         if self._context.canvas.refusal:
             paint_note(brush, *frame.screen, self._context.canvas.refusal, brush.ink.error)
         elif self._context.canvas.tool and frame.hovered:
-            action = "cut them" if self._context.canvas.tool == "cut" else "put dots on them"
-            paint_note(brush, *frame.screen, f"Drag across links to {action}. Escape cancels.", brush.ink.text)
+            paint_note(brush, *frame.screen, explain_tool(self._context.canvas.tool), brush.ink.text)
             if imgui.is_key_pressed(imgui.Key.escape):
                 self._context.canvas.tool = ""
 

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...language.translation import translate
 from ..theme.style import u32, ui_scale, vec4
+from ..toolkit.labels import make_label
 from .brush import DrawContext
 from .geometry import Rect
 
@@ -36,7 +38,7 @@ def draw_crumbs(context: CanvasContext, brush: DrawContext, panel: Rect) -> None
             imgui.same_line()
         is_open = place == session.place
         imgui.push_style_color(imgui.Col_.text, vec4(palette.text if is_open else palette.dim))
-        if imgui.button(f"{title}##crumb {index}") and not is_open:
+        if imgui.button(make_label(title, f"crumb {index}")) and not is_open:
             context.log.attempt(lambda place=place: session.go(place))
         imgui.pop_style_color()
         low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
@@ -45,7 +47,8 @@ def draw_crumbs(context: CanvasContext, brush: DrawContext, panel: Rect) -> None
         imgui.same_line(0.0, 16.0 * scale)
         imgui.align_text_to_frame_padding()
         imgui.text_colored(
-            vec4(palette.warning), f"{icons.ICON_FA_LOCK}  from {session.borrowed}: make it local to edit it here"
+            vec4(palette.warning),
+            f"{icons.ICON_FA_LOCK}  {translate('from {file}: make it local to edit it here', file=session.borrowed)}",
         )
     imgui.pop_style_var()
     imgui.pop_style_color()

@@ -19,6 +19,7 @@ CLICK = 4.0
 
 _BORDER, _SPEED = 28.0, 900.0
 _WHEEL_STEP = 60.0
+"""Pixels that one notch of the wheel moves the view. Chosen by feel."""
 
 
 @dataclass

@@ -26,6 +26,7 @@ SAMPLES = 24
 
 _MIN_HANDLE, _MAX_HANDLE = 24.0, 200.0
 _MARGIN = 48.0
+"""Pixels around what is shown as a whole; less in a small window."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,6 +16,7 @@ from ...errors import GraphError
 from ...graph import Graph, Group, Item, Port, Signature, Unknown, signature
 from ..fields.item_facts import describe_count
 from ..fields.numbers import bar, format_number, unit_suffix
+from ..shared.declared_words import name_choice, name_type, name_value, summarize_type
 from ..shared.entries import spell_out
 from .geometry import Rect
 
@@ -197,7 +198,7 @@ def _describe_item(id: str, item: Item, sort: NodeSort) -> tuple[str, str, str, 
     """The id, subtitle, category and doc of a node; no subtitle where it only repeats the id."""
     subtitle = find_subtitle(item)
     category = item.category if isinstance(item, Node) else "code" if subtitle in LANGUAGES.values() else sort
-    doc = (item.__doc__ or "").partition("\n")[0] if isinstance(item, Node) else ""
+    doc = summarize_type(type(item)) if isinstance(item, Node) else ""
     if spell_out(subtitle).lower() == spell_out(id).lower():
         subtitle = LANGUAGES[item.id] if isinstance(item, CustomNode) else ""
     return id, subtitle, category, doc
@@ -207,7 +208,7 @@ def find_subtitle(item: Item) -> str:
     """The subtitle of a node: the title of its type, or the name of its language."""
     if isinstance(item, Unknown):
         return LANGUAGES.get(item.type, item.type)
-    return item.title if isinstance(item, Node) else ""
+    return name_type(item.title) if isinstance(item, Node) else ""
 
 
 def _list_pins(node_signature: Signature, facts: NodeFacts) -> tuple[list[Pin], list[Pin]]:
@@ -268,7 +269,7 @@ def _make_value_rows(id: str, item: Item, graph: Graph, facts: NodeFacts, values
             continue
         kind = find_value_kind(value) if name in facts.linked_ins or _is_wireable(graph, Port(id, name)) else None
         pin = Pin(name, kind, 0.0, 0.0, True, True) if kind else None
-        linked, label = name in facts.linked_ins, value.label or spell_out(name)
+        linked, label = name in facts.linked_ins, name_value(value.label or name)
         rows.append(NodeRow(0.0, pin, None, value, label, plain, linked, texts=_make_field_texts(value, plain)))
     return rows
 
@@ -296,7 +297,7 @@ def _choose_rows(rows: list[NodeRow]) -> list[NodeRow]:
 
 def can_set_on_node(value: Value) -> bool:
     """False for values that only the inspector can edit."""
-    return value.type not in ("matrix", "curve", "ramp", "spline") and (
+    return value.type not in ("matrix", "curve", "ramp", "spline", "stroke") and (
         value.type != "vector" or value.length <= MOST_PARTS
     )
 
@@ -333,7 +334,9 @@ def _spread_pins(pins: list[Pin]) -> dict[str, Pin]:
 def _make_field_texts(value: Value, plain: Plain) -> tuple[FieldText, ...]:
     if value.type == "path":
         return (FieldText(PurePath(str(plain)).name),)
-    if value.type in ("choice", "text"):
+    if value.type == "choice":
+        return (FieldText(spell_out(name_choice(str(plain)))),)
+    if value.type == "text":
         return (FieldText(spell_out(str(plain))),)
     if value.items and isinstance(plain, ItemSet):
         return (FieldText(describe_count(plain, value.items.noun)),)

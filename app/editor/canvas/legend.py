@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from halation.nodes import Kind
 from imgui_bundle import imgui
 
+from ...language.translation import mark, translate
 from ..theme.style import u32, ui_scale, vec4
 from .brush import DrawContext
 from .geometry import CanvasTransform, Rect
@@ -20,15 +21,15 @@ _POPUP = "sockets"
 _SIDE, _GAP = 24.0, 12.0
 
 _MOUSE = (
-    ("Wheel", "zoom"),
-    ("Middle drag, Space + drag", "pan"),
-    ("Drag from a socket", "link"),
-    ("Drop a link on empty canvas", "add a node that fits"),
-    ("Drop a node on a link", "insert it"),
-    ("Ctrl + right drag", "cut links"),
-    ("Shift + right drag", "put dots on links"),
-    ("Double click", "view a node, enter a group"),
-    ("Ctrl while dragging", "snap to the grid"),
+    (mark("Wheel"), mark("zoom")),
+    (mark("Middle drag, Space + drag"), mark("pan")),
+    (mark("Drag from a socket"), mark("link")),
+    (mark("Drop a link on empty canvas"), mark("add a node that fits")),
+    (mark("Drop a node on a link"), mark("insert it")),
+    (mark("Ctrl + right drag"), mark("cut links")),
+    (mark("Shift + right drag"), mark("put dots on links")),
+    (mark("Double click"), mark("view a node, enter a group")),
+    (mark("Ctrl while dragging"), mark("snap to the grid")),
 )
 
 
@@ -68,6 +69,8 @@ class Legend:
     def _draw_contents(self, brush: DrawContext) -> None:
         scale, line = ui_scale(), imgui.get_text_line_height()
         draw = imgui.get_window_draw_list()
+        first = (18 + 24) * scale + max(imgui.calc_text_size(translate(kind, "kind")).x for kind in Kind)
+        second = 24 * scale + max(imgui.calc_text_size(translate(key)).x for key, _ in _MOUSE)
         for kind, meaning in ((kind, kind.facts.doc) for kind in Kind):
             corner = imgui.get_cursor_screen_pos()
             at = corner.x + 8 * scale, corner.y + line / 2
@@ -77,11 +80,11 @@ class Legend:
             paint_pin(popup, at[0] / scale, at[1] / scale, kind, brush.ink.kinds[kind])
             imgui.dummy((18 * scale, line))
             imgui.same_line()
-            imgui.text(kind)
-            imgui.same_line(90 * scale)
-            imgui.text_colored(vec4(self.context.palette.dim), meaning)
+            imgui.text(translate(kind, "kind"))
+            imgui.same_line(first)
+            imgui.text_colored(vec4(self.context.palette.dim), translate(meaning))
         imgui.separator()
         for key, act in _MOUSE:
-            imgui.text(key)
-            imgui.same_line(200 * scale)
-            imgui.text_colored(vec4(self.context.palette.dim), act)
+            imgui.text(translate(key))
+            imgui.same_line(second)
+            imgui.text_colored(vec4(self.context.palette.dim), translate(act))

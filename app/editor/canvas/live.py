@@ -20,7 +20,9 @@ from ..fields.colors import intensity
 from ..fields.fields import Edit, Fields
 from ..fields.number_field import number_field, row_of_numbers
 from ..fields.text_field import text_field
+from ..shared.declared_words import name_choice
 from ..shared.dialogs import browse
+from ..toolkit.labels import make_label
 from ..toolkit.words import show_tip
 from .brush import TEXT, DrawContext, make_node_palette
 from .geometry import Rect
@@ -171,7 +173,7 @@ class LiveFields:
     def _draw_choices(self, port: Port, value: Value, plain: Plain) -> None:
         appearing = imgui.is_window_appearing()
         for choice in value.choices:
-            if imgui.selectable(choice or " ", choice == plain)[0]:
+            if imgui.selectable(make_label(name_choice(choice) or " ", choice), choice == plain)[0]:
                 self._edits.append((port, Edit(choice)))
             low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
             self.context.places[f"choice {choice}"] = low.x, low.y, high.x, high.y

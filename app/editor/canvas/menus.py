@@ -11,11 +11,14 @@ from imgui_bundle import imgui
 
 from ...authoring.commands import AddDot, CutLinks, Disconnect, EditFrame, ExposeValue, HideControl, ResetValue
 from ...authoring.edits.element_id import ElementId
+from ...authoring.edits.naming import value_label
 from ...authoring.edits.values import find_control, is_default
 from ...graph import Group, Port
+from ...language.translation import mark, translate
 from ..shared.action import ListedAction
 from ..toolkit.buttons import entry
 from ..toolkit.keys import display_shortcut
+from ..toolkit.labels import make_label, translate_label
 from ..toolkit.places import record
 from .geometry import Point
 from .scene import EMPTY, Hit
@@ -52,22 +55,24 @@ class CanvasMenus:
         session, hit = self.context.session, self._hit
         if hit.part == "link" and hit.port:
             target = hit.port
-            _draw_item(self.context, "Add a dot", lambda: session.apply(AddDot(target, self._at)))
-            _draw_item(self.context, "Cut this link", lambda: session.apply(CutLinks((target,))))
+            _draw_item(self.context, mark("Add a dot"), lambda: session.apply(AddDot(target, self._at)))
+            _draw_item(self.context, mark("Cut this link"), lambda: session.apply(CutLinks((target,))))
         elif hit.part == "pin" and hit.port:
             self._draw_pin_items(hit.port, hit.output)
         elif hit.part == "field" and hit.port:
             self._draw_field_items(hit.port)
             imgui.separator()
         if hit.part == "empty":
-            label = f"{icons.ICON_FA_MAGNIFYING_GLASS}  Search to add ..."
+            label = f"{icons.ICON_FA_MAGNIFYING_GLASS}  {translate('Search to add ...')}"
             if imgui.menu_item(label, _find_shortcut(self.context, "node.add"), False)[0]:
                 self.context.canvas.searching = True
             record(self.context, "menu search")
             imgui.separator()
         kind = hit.key.kind
         if hit.key.is_note:
-            if imgui.menu_item("Rename ..." if kind == "frame" else "Edit text ...", "", False)[0]:
+            if imgui.menu_item(
+                translate_label("Rename ...") if kind == "frame" else translate_label("Edit text ..."), "", False
+            )[0]:
                 self.context.canvas.renaming = hit.key
             if kind == "frame":
                 _draw_colors(self.context, hit.key)
@@ -85,30 +90,36 @@ class CanvasMenus:
     def _draw_pin_items(self, port: Port, output: bool) -> None:
         session = self.context.session
         if output:
-            _draw_item(self.context, "View", lambda: session.views.show(port))
-            _draw_item(self.context, "View as B", lambda: session.views.show(port, "B"))
+            _draw_item(self.context, mark("View"), lambda: session.views.show(port))
+            _draw_item(self.context, mark("View as B"), lambda: session.views.show(port, "B"))
             fed = [target for target, source in session.graph.links.items() if source == port]
-            _draw_item(self.context, "Cut its links", lambda: session.apply(CutLinks(fed)), bool(fed))
+            _draw_item(self.context, mark("Cut its links"), lambda: session.apply(CutLinks(fed)), bool(fed))
         else:
             _draw_item(
-                self.context, "Cut its link", lambda: session.apply(Disconnect(port)), port in session.graph.links
+                self.context, mark("Cut its link"), lambda: session.apply(Disconnect(port)), port in session.graph.links
             )
             if port.node in session.graph.nodes and port in session.graph.links:
-                _draw_item(self.context, "Add a dot", lambda: session.apply(AddDot(port, self._at)))
+                _draw_item(self.context, mark("Add a dot"), lambda: session.apply(AddDot(port, self._at)))
 
     def _draw_field_items(self, port: Port) -> None:
         session = self.context.session
         _draw_item(
             self.context,
-            f"Reset {port.socket}",
+            mark("Reset {socket}"),
             lambda: session.apply(ResetValue(port)),
             not is_default(session.graph, port),
+            socket=value_label(session.graph, port),
         )
         control = find_control(session.graph, port)
         if control:
-            _draw_item(self.context, f"Hide the control '{control}'", lambda: session.apply(HideControl(control)))
+            _draw_item(
+                self.context,
+                mark("Hide the control '{control}'"),
+                lambda: session.apply(HideControl(control)),
+                control=control,
+            )
         else:
-            _draw_item(self.context, "Show as a control of the graph", lambda: session.apply(ExposeValue(port)))
+            _draw_item(self.context, mark("Show as a control of the graph"), lambda: session.apply(ExposeValue(port)))
 
 
 def _find_menu(hit: Hit) -> str:
@@ -140,7 +151,9 @@ def _find_shortcut(context: CanvasContext, id: str) -> str:
     return display_shortcut(text) if text else ""
 
 
-def _draw_item(context: CanvasContext, label: str, act: Callable[[], object], enabled: bool = True) -> None:
-    if imgui.menu_item(label, "", False, enabled)[0]:
+def _draw_item(
+    context: CanvasContext, label: str, act: Callable[[], object], enabled: bool = True, **places: str
+) -> None:
+    if imgui.menu_item(make_label(translate(label, **places), label), "", False, enabled)[0]:
         context.log.attempt(act)
-    record(context, f"menu {label}")
+    record(context, f"menu {label.format(**places)}")

@@ -28,6 +28,7 @@ from ...authoring.edits.element_id import NO_ELEMENT, ElementId
 from ...authoring.edits.selection import SelectMode
 from ...authoring.edits.wiring import why_not_linkable
 from ...graph import Group, Port
+from ...language.translation import translate
 from .frame import CanvasFrame, apply_wheel, pan_at_border
 from .geometry import Point, contains
 from .gestures import (
@@ -61,6 +62,7 @@ if TYPE_CHECKING:
 LEFT, RIGHT, MIDDLE = imgui.MouseButton_.left, imgui.MouseButton_.right, imgui.MouseButton_.middle
 
 _SNAP_REACH = 30.0
+"""Pixels from which a dragged link snaps to a pin: about a row of sockets. Chosen by feel."""
 
 
 @dataclass
@@ -378,6 +380,6 @@ def _finish_cut(frame: CanvasFrame, gesture: CutGesture) -> None:
 
     def add_dots() -> None:
         graph, dots = add_crossing_dots(session.graph, crossings)
-        session.apply(ReplaceGraph("Add dots", graph, dots))
+        session.apply(ReplaceGraph(translate("Add dots"), graph, dots))
 
     context.log.attempt(add_dots if gesture.dots else lambda: session.apply(CutLinks(tuple(crossings))))

@@ -8,6 +8,7 @@ from typing import Any
 
 from imgui_bundle import imgui
 
+from ...language.translation import translate
 from ..theme.style import mix, u32
 from .brush import TEXT, CanvasColors, DrawContext
 from .geometry import Curve, Point, Rect
@@ -70,7 +71,7 @@ def paint_comment(brush: DrawContext, box: ElementBox, text: str, selected: bool
         brush.draw_outline(rect, ink.accent, 4.0, 2.0, 1.0)
     low, high = brush.project_corners(rect)
     s = brush.to.scale
-    words, color = (text, ink.text) if text else ("double-click to write", ink.faint)
+    words, color = (text, ink.text) if text else (translate("double-click to write"), ink.faint)
     brush.draw.push_clip_rect(low, high, True)
     brush.draw.add_text(brush.fonts.text, TEXT * s, (low[0] + 12 * s, low[1] + 8 * s), color, words, (box.w - 20.0) * s)
     brush.draw.pop_clip_rect()

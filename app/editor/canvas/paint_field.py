@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
+from ...language.translation import translate
 from ..fields.colors import swatch
 from ..theme.style import u32
 from .brush import TEXT
@@ -80,8 +81,11 @@ def _paint_words(sketch: Sketch, rect: Rect, row: NodeRow, color: int) -> None:
         sketch.draw_triangle((x - 4, y - size / 2), (x + 4, y - size / 2), (x, y + size), sketch.ink.dim)
         right -= 14.0
     text = row.texts[0].text
-    if not text or kind in ("vector", "matrix", "curve", "ramp", "spline"):
-        text, color = {"path": "no file", "text": ""}.get(kind, "in the inspector"), sketch.ink.faint
+    if not text or kind in ("vector", "matrix", "curve", "ramp", "spline", "stroke"):
+        text, color = (
+            {"path": translate("no file"), "text": ""}.get(kind, translate("in the inspector")),
+            sketch.ink.faint,
+        )
     room = right - rect[0] - PAD
     label = sketch.shorten(row.label, room * 0.5)
     width = sketch.measure(label)

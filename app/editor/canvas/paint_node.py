@@ -8,6 +8,8 @@ from halation.nodes import Kind
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...language.translation import translate
+from ..shared.declared_words import name_value
 from ..shared.entries import spell_out
 from .brush import DETAILS_FROM, SMALL, TITLE, DrawContext
 from .geometry import Rect
@@ -200,19 +202,20 @@ def _paint_row(brush: Sketch, row: NodeRow, look: NodeLook) -> None:
     color = ink.dim if look.muted else ink.text
     room = WIDTH - _INSET * 2 if not (row.left and row.right) else WIDTH / 2 - _INSET - 2.0
     if row.left:
-        name = brush.shorten(spell_out(row.left.name), room)
+        name = brush.shorten(name_value(row.left.name), room)
         brush.draw_text(_INSET, y, ink.dim if row.left.optional and not row.linked else color, name)
         if row.hint:
             brush.draw_right(WIDTH - _INSET, y, ink.faint, row.hint, SMALL)
     if row.right:
-        brush.draw_right(WIDTH - _INSET, y, color, brush.shorten(spell_out(row.right.name), room))
+        brush.draw_right(WIDTH - _INSET, y, color, brush.shorten(name_value(row.right.name), room))
 
 
 def _paint_more(brush: DrawContext, box: ElementBox, layout: NodeLayout, hot: bool) -> None:
     _, top, _, bottom = layout.more or (0.0, 0.0, 0.0, 0.0)
     y, x = box.y + (top + bottom) / 2 - 1.0, box.x + box.w / 2
     color = brush.ink.dim if hot else brush.ink.faint
-    text = icons.ICON_FA_CHEVRON_UP if layout.open else f"{icons.ICON_FA_CHEVRON_DOWN} {layout.hidden} more"
+    more = translate("{count} more", count=layout.hidden)
+    text = icons.ICON_FA_CHEVRON_UP if layout.open else f"{icons.ICON_FA_CHEVRON_DOWN} {more}"
     brush.draw_text(x - brush.measure(text, 10.0) / 2, y, color, text, 10.0)
 
 

@@ -26,6 +26,8 @@ from ...authoring.edits.wiring import fits_picture, list_fitting_types
 from ...authoring.state.group_files import GroupFiles
 from ...graph import Port
 from ...graph.names import fresh_name
+from ...language.translation import translate
+from ..shared.declared_words import name_category
 from ..shared.entries import (
     GRAPH,
     GROUP,
@@ -44,6 +46,7 @@ from ..shared.entries import (
 from ..theme.style import mix, u32, ui_scale, vec4
 from ..toolkit.fields import keep_typing
 from ..toolkit.keys import is_enter_pressed
+from ..toolkit.labels import make_label
 from ..toolkit.places import record
 from .geometry import Point
 
@@ -52,6 +55,7 @@ if TYPE_CHECKING:
 
 _POPUP = "add to the graph"
 _RECENT = 5
+"""Nodes that were added last, on top of an empty search."""
 _FLAGS = int(imgui.WindowFlags_.no_move) | int(imgui.WindowFlags_.no_scrollbar)
 _WIDTH, _HEIGHT = 340.0, 380.0
 _FOOT_LINES = 3
@@ -145,8 +149,12 @@ class NodeSearch:
     def _draw_contents(self) -> CatalogEntry | None:
         keep_typing()
         imgui.set_next_item_width(-1)
-        hint = f"Search what fits {self._link[0]}" if self._link else "Search nodes, presets, frames ..."
-        hint = f"Replace {self._replaced} by ..." if self._replaced else hint
+        hint = (
+            translate("Search what fits {socket}", socket=self._link[0])
+            if self._link
+            else translate("Search nodes, presets, frames ...")
+        )
+        hint = translate("Replace {replaced} by ...", replaced=self._replaced) if self._replaced else hint
         before = self._query
         _, self._query = imgui.input_text_with_hint("##search", hint, self._query)
         record(self.context, "search field")
@@ -178,12 +186,12 @@ class NodeSearch:
         for section in sections:
             if section.title:
                 imgui.push_font(self.context.fonts.bold if self.context.fonts else None, 12.0)
-                imgui.text_colored(vec4(palette.dim), section.title.upper())
+                imgui.text_colored(vec4(palette.dim), name_category(section.title).upper())
                 imgui.pop_font()
             for entry in section.entries:
                 corner = imgui.get_cursor_screen_pos()
                 marked = index == self._marked
-                if imgui.selectable(f"      {entry.title}##{section.title} {entry.id}", marked)[0]:
+                if imgui.selectable(make_label(f"      {entry.shown}", f"{section.title} {entry.id}"), marked)[0]:
                     chosen = entry
                 record(self.context, f"search {entry.title}")
                 if imgui.is_item_hovered() and _is_mouse_moving():
@@ -199,19 +207,20 @@ class NodeSearch:
                     3 * scale,
                 )
                 if not section.title or section.title == "recent":
-                    width = imgui.calc_text_size(entry.category).x
+                    category = name_category(entry.category)
+                    width = imgui.calc_text_size(category).x
                     right = corner.x + imgui.get_content_region_avail().x - width
-                    draw.add_text((right, corner.y), u32(palette.dim, 0.8), entry.category)
+                    draw.add_text((right, corner.y), u32(palette.dim, 0.8), category)
                 index += 1
         if not index:
-            imgui.text_colored(vec4(palette.dim), "No node or preset matches.")
+            imgui.text_colored(vec4(palette.dim), translate("No node or preset matches."))
         return chosen
 
     def _draw_footer(self, lines: list[CatalogEntry]) -> None:
         imgui.separator()
         doc = lines[self._marked].doc if lines else ""
         imgui.push_style_color(imgui.Col_.text, vec4(self.context.palette.dim))
-        keys = f"{icons.ICON_FA_ARROW_UP}{icons.ICON_FA_ARROW_DOWN} choose, Enter adds, Escape closes"
+        keys = f"{icons.ICON_FA_ARROW_UP}{icons.ICON_FA_ARROW_DOWN} {translate('choose, Enter adds, Escape closes')}"
         imgui.text_wrapped(doc or keys)
         imgui.pop_style_color()
 

@@ -14,6 +14,7 @@ from ...authoring.edits.element_id import ElementId
 from ...authoring.edits.elements import entry, list_decor
 from ...authoring.edits.routes import routes
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Item, Port
+from ...language.translation import language
 from .geometry import Point
 from .layout import NodeFacts, NodeLayout, make_end_layout, make_node_layout
 from .link_index import LinkIndex, Wire
@@ -36,6 +37,8 @@ class SceneBuilder:
     _layouts: dict[str, tuple[Item, NodeFacts, NodeLayout]] = field(
         default_factory=dict[str, tuple[Item, NodeFacts, NodeLayout]]
     )
+    _language: str = field(default_factory=language)
+    """That of the words in the layouts."""
     _links: object = None
     _linked_sockets: tuple[dict[str, set[str]], dict[str, set[str]]] = field(default_factory=lambda: ({}, {}))
     _faults: dict[tuple[Port, Port], tuple[Any, str]] = field(default_factory=dict[tuple[Port, Port], tuple[Any, str]])
@@ -53,6 +56,9 @@ class SceneBuilder:
 
         `top` are drawn last, in order; `pictures` are the elements with one; `open` shows all its values for now.
         """
+        if self._language != language():
+            self._layouts.clear()
+            self._language, self._last = language(), None
         options = pictures, open, frozenset(self.expanded)
         boxes, net = self._update(graph, options) or self._rebuild(graph, position, *options[:2])
         self._last = graph, options, boxes, net

@@ -12,6 +12,7 @@ from imgui_bundle.imgui_color_text_edit import TextEditor
 from ...compiler import load_library
 from ...custom_nodes import Code
 from ...custom_nodes.notes import EDGES, UNITS
+from ...language.translation import mark, translate
 from ..theme.style import ui_scale, vec4
 from ..toolkit.buttons import quiet_button
 from ..toolkit.places import record
@@ -24,29 +25,29 @@ if TYPE_CHECKING:
 _POPUP = "help for code"
 
 NAMES = (
-    ("vec4 f(vec4 image)", "the last function is the node: pictures in, a picture out"),
-    ("vec4 vec3 vec2 float", "a parameter without a default is an input: color, vector or field"),
-    ("out vec4 a, out float b", "several outputs, in a function that returns void; they come last"),
-    ("ivec2 pixel, extent", "the position of the pixel, from the top left corner, and the size of the picture"),
-    ("image_at(ivec2 p)", "exactly that pixel of the input 'image'"),
-    ("image_near(vec2 p)", "filtered, at a position in pixels; pixel centers are at .5"),
-    ("ivec2 image_size", "the size of the input 'image'"),
-    ("int frame", "the frame that is rendered"),
-    ("float proxy", "the scale of the picture: multiply sizes in pixels by it"),
-    ("MODE_ADD", "the choice 'add' of the value 'mode', to compare with"),
+    ("vec4 f(vec4 image)", mark("the last function is the node: pictures in, a picture out")),
+    ("vec4 vec3 vec2 float", mark("a parameter without a default is an input: color, vector or field")),
+    ("out vec4 a, out float b", mark("several outputs, in a function that returns void; they come last")),
+    ("ivec2 pixel, extent", mark("the position of the pixel, from the top left corner, and the size of the picture")),
+    ("image_at(ivec2 p)", mark("exactly that pixel of the input 'image'")),
+    ("image_near(vec2 p)", mark("filtered, at a position in pixels; pixel centers are at .5")),
+    ("ivec2 image_size", mark("the size of the input 'image'")),
+    ("int frame", mark("the frame that is rendered")),
+    ("float proxy", mark("the scale of the picture: multiply sizes in pixels by it")),
+    ("MODE_ADD", mark("the choice 'add' of the value 'mode', to compare with")),
 )
 NOTES = (
-    ("= 0.5", "makes a parameter a value, with that default"),
-    ("0..1", "the range of its slider"),
-    (">= 0, <= 10", "hard limits"),
-    ('"Amount"', "the name of the value"),
-    (" ".join(UNITS), "its unit: px shrinks with a proxy, deg arrives in radians"),
-    ("color", "a color, for vec3 and vec4"),
-    ("handle", "a point with a handle in the viewer, for vec2"),
-    ("= add, one of add | max", "choices, for an int"),
-    ("optional 0", "an optional input, and its value if it is not linked"),
-    (" ".join(EDGES), "how a picture continues beyond its edges"),
-    (": a sentence", "a description; it comes last"),
+    ("= 0.5", mark("makes a parameter a value, with that default")),
+    ("0..1", mark("the range of its slider")),
+    (">= 0, <= 10", mark("hard limits")),
+    ('"Amount"', mark("the name of the value")),
+    (" ".join(UNITS), mark("its unit: px shrinks with a proxy, deg arrives in radians")),
+    ("color", mark("a color, for vec3 and vec4")),
+    ("handle", mark("a point with a handle in the viewer, for vec2")),
+    ("= add, one of add | max", mark("choices, for an int")),
+    ("optional 0", mark("an optional input, and its value if it is not linked")),
+    (" ".join(EDGES), mark("how a picture continues beyond its edges")),
+    (": a sentence", mark("a description; it comes last")),
 )
 
 
@@ -58,16 +59,18 @@ class CodeHelp:
 
     def draw(self, page: Page, code: Code) -> None:
         """Draw the button, and the popup if it is open."""
-        if quiet_button(self._context, icons.ICON_FA_CIRCLE_QUESTION, "button code help", "Help for writing code"):
+        if quiet_button(
+            self._context, icons.ICON_FA_CIRCLE_QUESTION, "button code help", translate("Help for writing code")
+        ):
             imgui.open_popup(_POPUP)
         scale = ui_scale()
         imgui.set_next_window_size_constraints((420 * scale, 60 * scale), (620 * scale, 560 * scale))
         if imgui.begin_popup(_POPUP):
             if code.language == "isf":
-                draw_dim(self._context, "Shaders in the Interactive Shader Format: isf.video describes it.")
+                draw_dim(self._context, translate("Shaders in the Interactive Shader Format: isf.video describes it."))
             else:
-                _draw_table(self._context, "Names", NAMES)
-                _draw_table(self._context, "// after a parameter", NOTES)
+                _draw_table(self._context, translate("Names"), NAMES)
+                _draw_table(self._context, translate("// after a parameter"), NOTES)
                 _draw_includes(self._context, page)
             imgui.end_popup()
 
@@ -92,7 +95,7 @@ def _draw_table(context: CodeContext, title: str, lines: tuple[tuple[str, str], 
             with font(context, "mono", 14.0):
                 imgui.text_unformatted(name)
             imgui.table_next_column()
-            draw_dim(context, does)
+            draw_dim(context, translate(does))
         imgui.end_table()
 
 

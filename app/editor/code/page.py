@@ -12,6 +12,7 @@ from ...authoring.commands import SetCode
 from ...custom_nodes import Code, CodeFault, CustomNode, node_type
 from ...errors import ShaderError
 from ...graph import Unknown
+from ...language.translation import translate
 from ..theme.style import mix, u32
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ class Fault:
     def text(self) -> str:
         """The sentence with its line number."""
         sentence = self.sentence[:1].upper() + self.sentence[1:]
-        return f"Line {self.line}: {self.sentence}" if self.line else sentence
+        return translate("Line {line}: {sentence}", line=self.line, sentence=self.sentence) if self.line else sentence
 
 
 @dataclass(eq=False)

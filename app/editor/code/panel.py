@@ -12,6 +12,7 @@ from imgui_bundle import imgui
 from ...authoring.commands import EmbedCode
 from ...authoring.edits import paths
 from ...custom_nodes import Code
+from ...language.translation import translate
 from ..theme.style import EM, ui_scale, vec4
 from ..toolkit.buttons import align_right, quiet_button
 from ..toolkit.keys import chord
@@ -28,6 +29,7 @@ MAX_PAGES = 16
 
 _SIZE = EM * 0.94
 _OURS = 0x434F4445
+"""The id under which the panel owns keys: "CODE" in ASCII."""
 _FOR_THIS_FRAME = int(imgui.internal.InputFlagsPrivate_.lock_this_frame)
 """The widget of the text does not see a key that is locked: it would begin a line."""
 
@@ -51,8 +53,10 @@ class CodePanel:
             draw_empty_panel(
                 self._context,
                 icons.ICON_FA_CODE,
-                "No code",
-                "Add a Code node to the graph, or select one: the code that you write here becomes the node.",
+                translate("No code"),
+                translate(
+                    "Add a Code node to the graph, or select one: the code that you write here becomes the node."
+                ),
             )
             return
         focused = imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows.value)
@@ -129,28 +133,40 @@ class CodePanel:
         glyphs = (icons.ICON_FA_FLOPPY_DISK, icons.ICON_FA_FILE_IMPORT, icons.ICON_FA_CIRCLE_QUESTION)
         glyphs = glyphs if code.file else (icons.ICON_FA_FILE_EXPORT, icons.ICON_FA_CIRCLE_QUESTION)
         draft = bool(code.file) and paths.resolve_path(code.file, session.graph.folder) in session.code_files.drafts
-        where = f"{PurePath(code.file).name}{' *' if draft else ''}" if code.file else "in the graph"
+        where = f"{PurePath(code.file).name}{' *' if draft else ''}" if code.file else translate("in the graph")
         room = imgui.get_content_region_avail().x - len(glyphs) * (imgui.get_frame_height() + style.item_spacing.x)
         imgui.align_text_to_frame_padding()
         draw_dim(self._context, cut_middle(where, max(room, 1.0)))
         record(self._context, "code where")
-        tip((f"{code.file}: not saved yet" if draft else code.file) if code.file else "Saved with the graph")
+        tip(
+            (translate("{file}: not saved yet", file=code.file) if draft else code.file)
+            if code.file
+            else translate("Saved with the graph")
+        )
         editable = not session.borrowed
         align_right(*glyphs)
         if code.file:
             if quiet_button(
-                self._context, glyphs[0], "button save code", "Save to the file (Ctrl+S)", enabled=draft and editable
+                self._context,
+                glyphs[0],
+                "button save code",
+                translate("Save to the file (Ctrl+S)"),
+                enabled=draft and editable,
             ):
                 page.commit()
                 self._save(page, code)
             imgui.same_line()
             if quiet_button(
-                self._context, glyphs[1], "button inline code", "Move into the graph; the file stays", enabled=editable
+                self._context,
+                glyphs[1],
+                "button inline code",
+                translate("Move into the graph; the file stays"),
+                enabled=editable,
             ):
                 page.commit()
                 self._context.log.attempt(lambda: session.apply(EmbedCode(page.id)))
         elif quiet_button(
-            self._context, glyphs[0], "button export code", "Move to a file of its own ...", enabled=editable
+            self._context, glyphs[0], "button export code", translate("Move to a file of its own ..."), enabled=editable
         ):
             page.commit()
             self._context.actions.run("code.export")

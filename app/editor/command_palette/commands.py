@@ -12,7 +12,9 @@ from ...authoring.commands import AddGroupFile, AddNode, AppendNode
 from ...authoring.edits.element_id import ElementId
 from ...custom_nodes.plugins import preset_paths
 from ...graph import Group
+from ...language.translation import translate
 from ..shared.action import ListedAction
+from ..shared.declared_words import name_category, name_choice, name_preset, name_type, raise_first, summarize_type
 from ..shared.entries import code_entries, is_word_match, mode_entries, spell_out
 from ..shared.fuzzy import Match, match
 
@@ -88,59 +90,74 @@ def explain_disabled(context: PaletteContext, action: ListedAction) -> str:
     if context.actions.is_enabled(action):
         return ""
     if action.id == "edit.undo":
-        return "nothing to undo"
+        return translate("nothing to undo")
     if action.id == "edit.redo":
-        return "nothing to redo"
+        return translate("nothing to redo")
     return (
-        "select something first" if action.scope == "graph" and not context.session.selection else "not available now"
+        translate("select something first")
+        if action.scope == "graph" and not context.session.selection
+        else translate("not available now")
     )
 
 
 def _all(context: PaletteContext) -> Iterator[Command]:
     """Every command. A weight below 0 puts what is rarely meant behind commands that match a text as well."""
     for action in context.actions.all:
-        label = action.label.removesuffix("...")
-        menu = action.menu.split("/")
+        label = translate(action.label).removesuffix("...")
+        menu = [translate(name, "menu") for name in action.menu.split("/")]
         full = f"{menu[1]} {label}" if len(menu) > 1 and menu[1].lower() not in label.lower() else label
         yield Command(
             action.id,
             full,
-            menu[0] or "Action",
+            menu[0] or translate("Action"),
             partial(context.actions.run, action.id),
             context.actions.shortcut(action.id),
-            action.doc,
+            translate(action.doc),
             explain_disabled(context, action),
         )
     for id, type in context.session.types.items():
-        doc = (type.__doc__ or "").strip().splitlines()
         yield Command(
             f"add {id}",
-            f"Add {type.title.title()}",
-            spell_out(type.category).capitalize(),
+            translate("Add {title}", title=_head(type.title, name_type)),
+            raise_first(name_category(type.category)),
             partial(_add, context, id),
-            doc=doc[0] if doc else "",
-            aliases=type.aliases,
+            doc=summarize_type(type),
+            aliases=(*type.aliases, type.title),
         )
     for entry in mode_entries(context.session.types):
         yield Command(
             f"merge {entry.title}",
-            f"Add Merge {entry.title.title()}",
-            spell_out(entry.category).capitalize(),
+            translate("Add Merge {title}", title=_head(entry.title, name_choice)),
+            raise_first(name_category(entry.category)),
             partial(_append, context, AddNode(entry.id, context.canvas.pointer, values=entry.values)),
             doc=entry.doc,
             aliases=entry.aliases,
             weight=-1.0,
         )
     for entry in code_entries():
-        yield Command(f"add {entry.id}", "Add Code", "Code", partial(_add, context, entry.id), doc=entry.doc)
+        yield Command(
+            f"add {entry.id}", translate("Add Code"), translate("Code"), partial(_add, context, entry.id), doc=entry.doc
+        )
     for path in preset_paths():
-        name = spell_out(path.stem).title()
+        name = _head(spell_out(path.stem), name_preset)
         opens, adds = partial(context.documents.open_preset, path), partial(_add_preset, context, path)
-        yield Command(f"preset {path.stem}", f"Open Preset {name}", "Preset", opens, weight=-4.0)
-        yield Command(f"group {path.stem}", f"Add Preset {name}", "Preset", adds, weight=-5.0)
+        yield Command(
+            f"preset {path.stem}", translate("Open Preset {name}", name=name), translate("Preset"), opens, weight=-4.0
+        )
+        yield Command(
+            f"group {path.stem}", translate("Add Preset {name}", name=name), translate("Preset"), adds, weight=-5.0
+        )
     for id, item in context.session.graph.nodes.items():
-        kind = "Group" if isinstance(item, Group) else "Node"
-        yield Command(f"go {id}", f"Go to {id}", kind, partial(_go, context, ElementId(id)), weight=-6.0)
+        kind = translate("Group", "element") if isinstance(item, Group) else translate("Node")
+        yield Command(
+            f"go {id}", translate("Go to {id}", id=id), kind, partial(_go, context, ElementId(id)), weight=-6.0
+        )
+
+
+def _head(title: str, name: Callable[[str], str]) -> str:
+    """A title as `name` translates it, in English with a capital letter at the beginning of each word."""
+    words = name(title)
+    return title.title() if words == title else words
 
 
 def _add(context: PaletteContext, type_id: str) -> None:

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import ImVec2, imgui
 
+from ...language.translation import translate
 from ..shared.fuzzy import Match, split_matched
 from ..theme.style import ui_scale, vec4
 from ..toolkit.dialogs import backdrop, dialog, escape_pressed
 from ..toolkit.fields import keep_typing
 from ..toolkit.keys import display_shortcut, is_enter_pressed
 from ..toolkit.places import record
-from ..toolkit.words import draw_dim, font
+from ..toolkit.words import cut_end, draw_dim, font, tip
 from .commands import Command, list_commands, rank_commands
 
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ class CommandPalette:
         keep_typing()
         imgui.set_next_item_width(-1)
         with font(self._context, "text", 18.0):
-            hint = "Type a command, a node or a preset"
+            hint = translate("Type a command, a node or a preset")
             changed, self._query = imgui.input_text_with_hint("##command", hint, self._query)
         record(self._context, "palette field")
         if changed:
@@ -80,7 +81,7 @@ class CommandPalette:
 
     def _draw_list(self, matches: tuple[tuple[Command, Match], ...], moved: bool) -> Command | None:
         if not matches:
-            draw_dim(self._context, "No command, node or preset matches.")
+            draw_dim(self._context, translate("No command, node or preset matches."))
             return None
         height = imgui.get_text_line_height() + 8 * ui_scale()
         chosen: Command | None = None
@@ -100,7 +101,8 @@ class CommandPalette:
         imgui.pop_style_var()
         imgui.end_child()
         doc = matches[self._chosen][0].doc if self._chosen < len(matches) else ""
-        draw_dim(self._context, doc or " ")
+        draw_dim(self._context, cut_end(doc or " ", imgui.get_content_region_avail().x))
+        tip(doc)
         return chosen
 
     def _draw_row(self, index: int, command: Command, letters: Match, height: float) -> bool:

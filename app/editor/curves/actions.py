@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...graph import Extrapolation, Interpolation
+from ...language.translation import mark
 from ..shared.action import Action
 from . import commands
 from .commands import has_chosen_keys
@@ -14,16 +15,20 @@ if TYPE_CHECKING:
 
 _KEYS = frozenset({"keys"})
 _INTERPOLATIONS: tuple[tuple[Interpolation, str], ...] = (
-    ("constant", "Hold the value until the next key."),
-    ("linear", "Change linearly to the next key."),
-    ("smooth", "Change smoothly, without overshooting the keys."),
-    ("bezier", "Follow the handles."),
+    ("constant", mark("Hold the value until the next key.")),
+    ("linear", mark("Change linearly to the next key.")),
+    ("smooth", mark("Change smoothly, without overshooting the keys.")),
+    ("bezier", mark("Follow the handles.")),
 )
 _EXTRAPOLATIONS: tuple[tuple[Extrapolation, str, str], ...] = (
-    ("hold", "Hold", "Before the first and after the last key the value stays."),
-    ("linear", "Linear", "Before the first and after the last key the value continues along its slope."),
-    ("loop", "Repeat", "The part between the first and the last key repeats."),
-    ("mirror", "Ping-Pong", "The part between the first and the last key repeats, forwards and backwards in turn."),
+    ("hold", mark("Hold"), mark("Before the first and after the last key the value stays.")),
+    ("linear", mark("Linear"), mark("Before the first and after the last key the value continues along its slope.")),
+    ("loop", mark("Repeat"), mark("The part between the first and the last key repeats.")),
+    (
+        "mirror",
+        mark("Ping-Pong"),
+        mark("The part between the first and the last key repeats, forwards and backwards in turn."),
+    ),
 )
 
 

@@ -9,6 +9,7 @@ from ...authoring.commands import AnimateValues
 from ...authoring.edits.values import animatable_values
 from ...errors import UsageError
 from ...graph import Extrapolation, Graph, Interpolation, Keys, Port, Settings
+from ...language.translation import mark, translate, translate_plural
 from ..toolkit.plane import View
 from .copying import decode_keys, encode_keys, paste_keys
 from .editing import (
@@ -42,7 +43,7 @@ def set_keys(context: CurvesContext, changes: Mapping[Port, Keys], label: str, m
 def describe_keys(spots: frozenset[Spot]) -> str:
     """The number of keys, in words."""
     count = len({(port, frame) for port, frame, _ in spots})
-    return "a key" if count == 1 else f"{count} keys"
+    return translate_plural("a key", "{count} keys", count)
 
 
 def has_chosen_keys(context: CurvesContext) -> bool:
@@ -65,37 +66,41 @@ def choose_none(context: CurvesContext) -> None:
 
 def delete(context: CurvesContext) -> None:
     """Delete the selected keys."""
-    _change(context, lambda graph, spots: remove_keys(graph.animation, spots), "Delete")
+    _change(context, lambda graph, spots: remove_keys(graph.animation, spots), mark("Delete {keys}"))
 
 
 def interpolate(how: Interpolation) -> Callable[[CurvesContext], None]:
     """A command that sets the interpolation of the selected keys."""
-    return lambda context: _change(
-        context, lambda graph, spots: interpolate_keys(graph.animation, spots, how), f"Make {how}:"
-    )
+    label = {
+        "constant": mark("Make constant: {keys}"),
+        "linear": mark("Make linear: {keys}"),
+        "smooth": mark("Make smooth: {keys}"),
+        "bezier": mark("Make bezier: {keys}"),
+    }[how]
+    return lambda context: _change(context, lambda graph, spots: interpolate_keys(graph.animation, spots, how), label)
 
 
 def ease(how: Ease) -> Callable[[CurvesContext], None]:
     """A command that eases the selected keys in, out or both."""
-    words = {"in": "Ease into", "out": "Ease out of", "both": "Ease"}[how]
-    return lambda context: _change(context, lambda graph, spots: ease_keys(graph.animation, spots, how), words)
+    label = {"in": mark("Ease into {keys}"), "out": mark("Ease out of {keys}"), "both": mark("Ease {keys}")}[how]
+    return lambda context: _change(context, lambda graph, spots: ease_keys(graph.animation, spots, how), label)
 
 
 def make_automatic(context: CurvesContext) -> None:
     """Reset the handles of the selected keys to the smooth curve."""
     context.curves.free -= _list_chosen_keys(context)
-    _change(context, lambda graph, spots: reset_handles(graph.animation, spots), "Automatic handles of")
+    _change(context, lambda graph, spots: reset_handles(graph.animation, spots), mark("Automatic handles of {keys}"))
 
 
 def make_aligned(context: CurvesContext) -> None:
     """Align both handles of the selected keys, so that they turn together."""
     context.curves.free -= _list_chosen_keys(context)
-    _change(context, lambda graph, spots: align_handles(graph.animation, spots), "Align handles of")
+    _change(context, lambda graph, spots: align_handles(graph.animation, spots), mark("Align handles of {keys}"))
 
 
 def make_free(context: CurvesContext) -> None:
     """Let each handle of the selected keys turn alone."""
-    _change(context, lambda graph, spots: fix_handles(graph.animation, spots), "Free handles of")
+    _change(context, lambda graph, spots: fix_handles(graph.animation, spots), mark("Free handles of {keys}"))
     context.curves.free |= _list_chosen_keys(context)
 
 
@@ -106,8 +111,8 @@ def extrapolate(how: Extrapolation) -> Callable[[CurvesContext], None]:
         state, graph = context.curves, context.session.graph
         ports = {port for port, _, _ in state.spots} or state.chosen_rows
         if not ports:
-            raise UsageError("no keys are selected: select a key or a row first")
-        set_keys(context, extrapolate_keys(graph.animation, ports, how), f"Outside of keys: {how}")
+            raise UsageError(translate("no keys are selected: select a key or a row first"))
+        set_keys(context, extrapolate_keys(graph.animation, ports, how), translate("Outside of keys: {how}", how=how))
 
     return act
 
@@ -127,14 +132,14 @@ def copy(context: CurvesContext) -> None:
 def cut(context: CurvesContext) -> None:
     """Copy the selected keys to the clipboard and delete them."""
     copy(context)
-    _change(context, lambda graph, spots: remove_keys(graph.animation, spots), "Cut")
+    _change(context, lambda graph, spots: remove_keys(graph.animation, spots), mark("Cut {keys}"))
 
 
 def paste(context: CurvesContext) -> None:
     """Paste keys from the clipboard at the current frame, and select them."""
     session, state = context.session, context.curves
     change = paste_keys(session.graph, decode_keys(context.clipboard.get()), session.time.frame, state.chosen_rows)
-    set_keys(context, change.new_keys, f"Paste {describe_keys(change.spots)}")
+    set_keys(context, change.new_keys, translate("Paste {keys}", keys=describe_keys(change.spots)))
     state.spots = change.spots
 
 
@@ -143,7 +148,7 @@ def duplicate(context: CurvesContext) -> None:
     state, graph = context.curves, context.session.graph
     span = find_frame_range(state.spots)
     if span is None:
-        raise UsageError("no keys are selected: select what to duplicate")
+        raise UsageError(translate("no keys are selected: select what to duplicate"))
     change = move_keys(graph.animation, state.spots, float(int(span[1] - span[0]) + 1))
     new_keys = {
         port: Keys(
@@ -152,7 +157,7 @@ def duplicate(context: CurvesContext) -> None:
         for port, keys in change.new_keys.items()
         if isinstance(before := graph.animation[port], Keys)
     }
-    set_keys(context, new_keys, f"Duplicate {describe_keys(state.spots)}")
+    set_keys(context, new_keys, translate("Duplicate {keys}", keys=describe_keys(state.spots)))
     state.spots = change.spots
 
 
@@ -162,7 +167,7 @@ def nudge(by: float) -> Callable[[CurvesContext], None]:
     def act(context: CurvesContext) -> None:
         state = context.curves
         change = move_keys(context.session.graph.animation, state.spots, by)
-        set_keys(context, change.new_keys, f"Move {describe_keys(state.spots)}", "nudge keys")
+        set_keys(context, change.new_keys, translate("Move {keys}", keys=describe_keys(state.spots)), "nudge keys")
         state.spots = change.spots
 
     return act
@@ -174,7 +179,7 @@ def insert(context: CurvesContext, port: Port, frame: float) -> None:
     if isinstance(keys, Keys):
         frame = round(frame, 6)
         new_keys = keys.insert(frame)
-        set_keys(context, {port: new_keys}, f"Key {port}")
+        set_keys(context, {port: new_keys}, translate("Key {port}", port=port))
         context.curves.choose(list_spots(port, new_keys, (frame,)))
 
 
@@ -183,7 +188,7 @@ def key_here(context: CurvesContext) -> None:
     state, session = context.curves, context.session
     rows = state.list_curve_rows(state.list_rows(session.graph, session.selection))
     new_keys = {row.port: row.keys.insert(float(session.time.frame)) for row in rows if row.port and row.keys}
-    set_keys(context, new_keys, f"Key at frame {session.time.frame}")
+    set_keys(context, new_keys, translate("Key at frame {frame}", frame=session.time.frame))
     state.choose(
         frozenset().union(*(list_spots(port, keys, (float(session.time.frame),)) for port, keys in new_keys.items()))
     )
@@ -237,11 +242,11 @@ def list_animatable(context: CurvesContext) -> tuple[Port, ...]:
     )
 
 
-def _change(context: CurvesContext, make: Callable[[Graph, frozenset[Spot]], Mapping[Port, Keys]], words: str) -> None:
+def _change(context: CurvesContext, make: Callable[[Graph, frozenset[Spot]], Mapping[Port, Keys]], label: str) -> None:
     state, graph = context.curves, context.session.graph
     if not state.spots:
-        raise UsageError("no keys are selected: click some, or drag a box around them")
-    set_keys(context, make(graph, state.spots), f"{words} {describe_keys(state.spots)}")
+        raise UsageError(translate("no keys are selected: click some, or drag a box around them"))
+    set_keys(context, make(graph, state.spots), translate(label, keys=describe_keys(state.spots)))
 
 
 def _list_chosen_keys(context: CurvesContext) -> set[tuple[Port, float]]:

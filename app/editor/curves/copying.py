@@ -9,6 +9,7 @@ from typing import Any, get_args
 
 from ...errors import UsageError
 from ...graph import Animation, Graph, Interpolation, Key, Keys, Port
+from ...language.translation import translate
 from .editing import KeyEdit, group_spots
 from .rows import Spot, list_spots
 
@@ -26,7 +27,7 @@ def encode_keys(animation: Mapping[Port, Animation], spots: Collection[Spot]) ->
     """The selected keys as text. Raises UsageError if there are none."""
     frames_by_port = group_spots(animation, spots)
     if not frames_by_port:
-        raise UsageError("no keys are selected: select what to copy")
+        raise UsageError(translate("no keys are selected: select what to copy"))
     first = min(frame for frames in frames_by_port.values() for frame in frames)
     values = {
         str(port): [_encode_key(key, first) for key in keys.keys if key.frame in frames]
@@ -42,7 +43,7 @@ def decode_keys(text: str) -> CopiedKeys:
         values = json.loads(text)[_NAME]
         return CopiedKeys({Port.parse(name): tuple(map(_decode_key, keys)) for name, keys in values.items()})
     except Exception:
-        raise UsageError("the clipboard holds no keys: copy some first") from None
+        raise UsageError(translate("the clipboard holds no keys: copy some first")) from None
 
 
 def paste_keys(graph: Graph, copied: CopiedKeys, frame: float, rows: Collection[Port] = ()) -> KeyEdit:
@@ -65,7 +66,7 @@ def paste_keys(graph: Graph, copied: CopiedKeys, frame: float, rows: Collection[
         new_keys[port] = Keys((*before.keys, *pasted), before.outside)
         spots |= list_spots(port, new_keys[port], (key.frame for key in pasted))
     if not new_keys:
-        raise UsageError("the values of these keys are not in this graph: select a row to paste into")
+        raise UsageError(translate("the values of these keys are not in this graph: select a row to paste into"))
     return KeyEdit(new_keys, frozenset(spots))
 
 

@@ -19,6 +19,16 @@ from ...graph.keys import round_keys
 from .rows import Spot
 from .shapes import is_interpolated, read_key_channel
 
+_NO_FRAMES = 1e-9
+"""Frames of a handle that are 0 but for rounding: it has no slope."""
+
+_UPRIGHT = 1e-6
+"""Frames of a handle that is moved, below which it points straight up: the other one then keeps its slope."""
+
+_ALIGNED = 1e-4
+"""How far handles may be from one line, as a part of their size, and still count as lying on it: files may have
+fewer digits than doubles. Chosen by judgement."""
+
 Animations = Mapping[Port, Animation]
 Limits = Callable[[Port], tuple[float, float]]
 Side = Literal["left", "right"]
@@ -162,8 +172,10 @@ def has_aligned_handles(keys: Keys, frame: float) -> bool:
     left, right = keys.handles(frame)
     if not left or not right:
         return False
-    size = max(map(abs, (*left[1:], *right[1:])), default=0.0) * max(abs(left[0]), abs(right[0]), 1e-9)
-    return all(abs(a * right[0] - b * left[0]) <= 1e-4 * size + 1e-12 for a, b in zip(left[1:], right[1:], strict=True))
+    size = max(map(abs, (*left[1:], *right[1:])), default=0.0) * max(abs(left[0]), abs(right[0]), _NO_FRAMES)
+    return all(
+        abs(a * right[0] - b * left[0]) <= _ALIGNED * size + 1e-12 for a, b in zip(left[1:], right[1:], strict=True)
+    )
 
 
 def pull_handle(keys: Keys, frame: float, channel: int, side: Side, to: tuple[float, float], both: bool) -> Keys:
@@ -176,12 +188,12 @@ def pull_handle(keys: Keys, frame: float, channel: int, side: Side, to: tuple[fl
     if not old_handle:
         return keys
     across = min(to[0], 0.0) if side == "left" else max(to[0], 0.0)
-    ratio = across / old_handle[0] if abs(old_handle[0]) > 1e-9 else 1.0
+    ratio = across / old_handle[0] if abs(old_handle[0]) > _NO_FRAMES else 1.0
     handle = [across, *(part * ratio for part in old_handle[1:])]
     handle[1 + channel] = to[1]
     opposite = None
     if both and old_opposite:
-        slope = -old_opposite[0] / across if abs(across) > 1e-6 else None
+        slope = -old_opposite[0] / across if abs(across) > _UPRIGHT else None
         opposite = [*old_opposite]
         for place in range(1, len(handle)):
             opposite[place] = -handle[place] * (slope if slope is not None else 1.0)
@@ -268,7 +280,7 @@ def _make_flat_handle(keys: Keys, place: int, side: int) -> tuple[float, ...]:
 
 
 def _find_slope(handle: tuple[float, ...], place: int) -> float:
-    return handle[place] / handle[0] if abs(handle[0]) > 1e-9 else 0.0
+    return handle[place] / handle[0] if abs(handle[0]) > _NO_FRAMES else 0.0
 
 
 def _get_keys(animation: Animations, port: Port) -> Keys:

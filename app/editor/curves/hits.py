@@ -18,6 +18,7 @@ REACH = 7.0
 
 SIDES: tuple[Side, Side] = ("left", "right")
 _BEYOND = 12.0
+"""Pixels beyond the view in which keys are still drawn and hit: their marks are that wide."""
 
 
 class Mark(NamedTuple):

@@ -8,6 +8,7 @@ from msgspec import structs
 
 from ...authoring.edits.values import can_animate
 from ...graph import Keys, Port
+from ...language.translation import translate
 from ..fields.fields import Edit, Fields
 from ..fields.number_field import row_of_numbers
 from ..theme.palette import DARK
@@ -82,10 +83,13 @@ class KeyFields:
         declaration = frame.graph.declaration(port)
         first, last = frame.context.session.time.frames
         time = Value("frame", "float", 1.0, low=float(first), high=float(max(last, first + 1)))
-        rows: list[tuple[str, str, tuple[float, ...], Value]] = [("frame", "Frame", (key.frame,), time)]
+        rows: list[tuple[str, str, tuple[float, ...], Value]] = [
+            ("frame", translate("Frame", "time"), (key.frame,), time)
+        ]
         if key.channels and len(key.channels) <= 4:
             kind = structs.replace(declaration, type="int" if declaration.type == "int" else "float")
-            rows.append(("value", "Value", key.value if isinstance(key.value, tuple) else (key.value,), kind))  # type: ignore
+            value = key.value if isinstance(key.value, tuple) else (key.value,)
+            rows.append(("value", translate("Value"), value, kind))  # type: ignore
             if not frame.is_sheet and len(key.channels) == 1:
                 loose = structs.replace(
                     kind,
@@ -98,7 +102,7 @@ class KeyFields:
                 )
                 rows += [
                     (side, label, handle, loose)
-                    for side, label, handle in zip(SIDES, ("In", "Out"), keys.handles(at), strict=True)
+                    for side, label, handle in zip(SIDES, _side_names(), keys.handles(at), strict=True)
                     if handle and has_handle(keys, index, side)
                 ]
         return rows
@@ -123,8 +127,13 @@ class KeyFields:
             new_keys = keys.with_handles(at, **{name: handle})
             state.free.add((port, at))
             change = KeyEdit({port: new_keys}, state.spots)
-        commands.set_keys(context, change.new_keys, f"Set {name} of a key", edit.merge)
+        commands.set_keys(context, change.new_keys, translate("Set {name} of a key", name=name), edit.merge)
         state.spots = change.spots
+
+
+def _side_names() -> tuple[str, str]:
+    """The names of the handles of a key."""
+    return translate("In", "handle of a key"), translate("Out", "handle of a key")
 
 
 def _find_single_key(frame: CurvesFrame) -> tuple[Port, Keys, float] | None:

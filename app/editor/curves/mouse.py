@@ -8,6 +8,7 @@ from typing import Literal
 from imgui_bundle import imgui
 
 from ...graph import Keys
+from ...language.translation import translate
 from . import commands
 from .editing import KeyEdit, find_frame_range, has_aligned_handles
 from .frame import CurvesFrame, contains
@@ -22,7 +23,11 @@ CLICK = 3.0
 """Pixels (at UI scale 1) that the mouse may move within a click."""
 
 _WHEEL_STEP = 48.0
+"""Pixels that one notch of the wheel moves the view. Chosen by feel."""
+
 _FRAME_REACH = 4.0
+"""Pixels on both sides at which the line of the frame is hit. Chosen by feel."""
+
 Part = Literal["", "key", "tip", "left", "right", "bar", "now", "ruler", "curve", "open"]
 
 
@@ -229,16 +234,25 @@ class CurvesMouse:
                     across=not (curves and io.key_ctrl),
                     up=curves and not io.key_shift,
                 )
-                self._set_keys(frame, change, f"Move {commands.describe_keys(gesture.spots)}", gesture.merge)
+                self._set_keys(
+                    frame, change, translate("Move {keys}", keys=commands.describe_keys(gesture.spots)), gesture.merge
+                )
             case KeyScale():
                 if self._is_dragged(frame):
                     change = gesture.change(at[0], state.snap != io.key_shift)
-                    self._set_keys(frame, change, f"Scale {commands.describe_keys(gesture.spots)}", gesture.merge)
+                    self._set_keys(
+                        frame,
+                        change,
+                        translate("Scale {keys}", keys=commands.describe_keys(gesture.spots)),
+                        gesture.merge,
+                    )
             case HandleDrag():
                 if io.key_alt:
                     state.free.add((gesture.port, gesture.frame))
                 new_keys = gesture.change(at, gesture.turns_both and not io.key_alt, flat=io.key_shift)
-                self._set_keys(frame, KeyEdit({gesture.port: new_keys}, state.spots), "Bend a curve", gesture.merge)
+                self._set_keys(
+                    frame, KeyEdit({gesture.port: new_keys}, state.spots), translate("Bend a curve"), gesture.merge
+                )
             case _:
                 pass
 

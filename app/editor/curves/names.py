@@ -12,7 +12,9 @@ from ...authoring.commands import AnimateValue, BakeKeys, ToggleKey
 from ...authoring.edits.element_id import ElementId
 from ...errors import HalationError
 from ...graph import Keys, Port
+from ...language.translation import mark, translate
 from ..theme.style import mix, u32
+from ..toolkit.labels import make_label
 from ..toolkit.words import cut_end
 from .frame import CurvesFrame, color_of, draw_small_text
 from .hits import EntryCache
@@ -214,19 +216,26 @@ def draw_value_menu(context: CurvesContext, port: Port) -> None:
     session = context.session
 
     def draw_entry(icon: str, label: str, act: object, enabled: bool = True) -> None:
-        if imgui.menu_item(f"{icon}  {label}", "", False, enabled)[0]:
+        if imgui.menu_item(make_label(f"{icon}  {translate(label)}", label), "", False, enabled)[0]:
             context.log.attempt(act)  # type: ignore[arg-type]
 
     animation = session.graph.animation.get(port)
     keyed = isinstance(animation, Keys)
     has_key = session.time.find_key(port) is not None
-    draw_entry(icons.ICON_FA_KEY, "Remove Key" if has_key else "Set Key", lambda: session.apply(ToggleKey(port)), keyed)
-    draw_entry(icons.ICON_FA_WAVE_SQUARE, "Bake to Keys", lambda: session.apply(BakeKeys(port)), animation is not None)
-    draw_entry(icons.ICON_FA_CROSSHAIRS, "Select Node", lambda: session.select(ElementId.of_port(port)))
+    draw_entry(
+        icons.ICON_FA_KEY,
+        mark("Remove Key") if has_key else mark("Set Key"),
+        lambda: session.apply(ToggleKey(port)),
+        keyed,
+    )
+    draw_entry(
+        icons.ICON_FA_WAVE_SQUARE, mark("Bake to Keys"), lambda: session.apply(BakeKeys(port)), animation is not None
+    )
+    draw_entry(icons.ICON_FA_CROSSHAIRS, mark("Select Node"), lambda: session.select(ElementId.of_port(port)))
     imgui.separator()
     draw_entry(
         icons.ICON_FA_XMARK,
-        "Remove Animation",
-        lambda: session.apply(AnimateValue(port, None, f"Remove animation of {port}")),
+        mark("Remove Animation"),
+        lambda: session.apply(AnimateValue(port, None, translate("Remove animation of {port}", port=port))),
         animation is not None,
     )

@@ -8,6 +8,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...graph import Keys
+from ...language.translation import translate, translate_plural
 from ..theme.style import u32, ui_scale
 from ..toolkit.buttons import dropdown
 from ..toolkit.plane import Plane, View
@@ -224,18 +225,21 @@ class AnimationPanel:
         draw_empty_panel(
             self._context,
             icons.ICON_FA_BEZIER_CURVE,
-            "No value is animated yet",
-            "A value that has keys changes over time. Click the diamond beside a value in the Inspector, go to another "
-            "frame and change the value: the second key is set automatically.",
+            translate("No value is animated yet"),
+            translate(
+                "A value that has keys changes over time. Click the diamond beside a value in the "
+                "Inspector, go to another frame and change the value: the second key is set "
+                "automatically."
+            ),
         )
-        label = f"{icons.ICON_FA_PLUS}  Animate a value"
+        label = f"{icons.ICON_FA_PLUS}  {translate('Animate a value')}"
         width = imgui.calc_text_size(label).x + 2 * imgui.get_style().frame_padding.x
         imgui.set_cursor_pos_x(max((imgui.get_window_width() - width) * 0.5, 0.0))
         dropdown(
             self._context,
             label,
             "button keys add",
-            "Values of the selected nodes",
+            translate("Values of the selected nodes"),
             lambda: draw_animatable(self._context),
             lit=True,
         )
@@ -244,12 +248,9 @@ class AnimationPanel:
 def _describe_count(frame: CurvesFrame) -> str:
     """The number of values, or of selected keys."""
     if frame.state.spots:
-        return f"{commands.describe_keys(frame.state.spots).replace('a key', '1 key')} selected"
+        count = len({(port, at) for port, at, _ in frame.state.spots})
+        return translate_plural("{count} key selected", "{count} keys selected", count)
     values = sum(row.port is not None for row in frame.rows)
-    return (
-        "1 value"
-        if values == 1
-        else f"{values} values"
-        if values
-        else "Hidden: collapsed, or of nodes that are not selected"
-    )
+    if not values:
+        return translate("Hidden: collapsed, or of nodes that are not selected")
+    return translate_plural("{count} value", "{count} values", values)

@@ -26,6 +26,8 @@ TOLERANCE = 0.15
 """The largest error of a drawn curve, in pixels."""
 
 _MOST, _REPEATS, _SAMPLES = 1024, 64, 240
+"""The most points of a piece, repeats of a curve to each side, and samples of an expression that are drawn. Chosen by
+judgement, only to bound the work of a frame."""
 
 
 def read_key_channel(key: Key, channel: int) -> float:

@@ -13,9 +13,11 @@ from imgui_bundle import imgui
 from ...authoring.commands import SetKey
 from ...authoring.edits.naming import value_label
 from ...graph import Interpolation
+from ...language.translation import mark, translate
 from ..theme.style import u32, ui_scale, vec4
 from ..toolkit.buttons import dropdown, entry, quiet_button, tip_of, tool, width_of_buttons
 from ..toolkit.keys import display_shortcut
+from ..toolkit.labels import make_label
 from . import commands
 from .paint import paint_key
 from .state import Mode
@@ -26,20 +28,20 @@ if TYPE_CHECKING:
 LOOKS: tuple[Interpolation, ...] = ("constant", "linear", "smooth", "bezier")
 _GAP, _GROUP_GAP = 2.0, 10.0
 _MEANING = {
-    "constant": "holds the value until the next key",
-    "linear": "changes linearly to the next key",
-    "smooth": "changes smoothly, without overshooting",
-    "bezier": "follows the handles",
+    "constant": mark("holds the value until the next key"),
+    "linear": mark("changes linearly to the next key"),
+    "smooth": mark("changes smoothly, without overshooting"),
+    "bezier": mark("follows the handles"),
 }
 _MOUSE = (
-    ("Drag keys", "move them; Shift: between frames"),
-    ("Alt + drag, ends of the bar", "scale the keys in time"),
-    ("Drag on empty space", "select with a box; Shift adds, Ctrl toggles"),
-    ("Double click", "add a key on the curve"),
-    ("Wheel", "zoom; in curves, Ctrl: time only, Shift: values only"),
-    ("Middle drag", "pan"),
-    ("Curves: Ctrl, Shift + drag", "values only, time only"),
-    ("Alt + drag a handle", "turn only this handle; Shift keeps it horizontal"),
+    (mark("Drag keys"), mark("move them; Shift: between frames")),
+    (mark("Alt + drag, ends of the bar"), mark("scale the keys in time")),
+    (mark("Drag on empty space"), mark("select with a box; Shift adds, Ctrl toggles")),
+    (mark("Double click"), mark("add a key on the curve")),
+    (mark("Wheel"), mark("zoom; in curves, Ctrl: time only, Shift: values only")),
+    (mark("Middle drag"), mark("pan")),
+    (mark("Curves: Ctrl, Shift + drag"), mark("values only, time only")),
+    (mark("Alt + drag a handle"), mark("turn only this handle; Shift keeps it horizontal")),
 )
 
 
@@ -61,7 +63,13 @@ def draw_toolbar(context: CurvesContext, room: float) -> None:
         needed = gap + curve_tool.width + (more if place + 1 < len(tools) else 0.0)
         if needed > room:
             imgui.same_line(0.0, _GROUP_GAP * scale)
-            dropdown(context, icons.ICON_FA_ELLIPSIS, "button more keys", "More tools", lambda: draw_keys_menu(context))
+            dropdown(
+                context,
+                icons.ICON_FA_ELLIPSIS,
+                "button more keys",
+                translate("More tools"),
+                lambda: draw_keys_menu(context),
+            )
             return
         if not first:
             imgui.same_line(0.0, gap)
@@ -86,20 +94,26 @@ def _make_view_tools(context: CurvesContext) -> list[_CurveTool]:
 
         return _CurveTool(square, draw)
 
-    rows = "Selected nodes" if state.only_selected else "All values"
+    rows = translate("Selected nodes") if state.only_selected else translate("All values")
     width = max(
-        map(width_of_buttons, (f"{icons.ICON_FA_FILTER}  Selected nodes", f"{icons.ICON_FA_FILTER}  All values"))
+        map(
+            width_of_buttons,
+            (
+                f"{icons.ICON_FA_FILTER}  {translate('Selected nodes')}",
+                f"{icons.ICON_FA_FILTER}  {translate('All values')}",
+            ),
+        )
     )
     return [
-        make_mode_tool("sheet", icons.ICON_FA_BARS_STAGGERED, "Dope sheet"),
-        make_mode_tool("curves", icons.ICON_FA_BEZIER_CURVE, "Curves"),
+        make_mode_tool("sheet", icons.ICON_FA_BARS_STAGGERED, translate("Dope sheet")),
+        make_mode_tool("curves", icons.ICON_FA_BEZIER_CURVE, translate("Curves")),
         _CurveTool(
             width,
             lambda: dropdown(
                 context,
                 f"{icons.ICON_FA_FILTER}  {rows}",
                 "button keys filter",
-                "Which values are listed",
+                translate("Which values are listed"),
                 lambda: _draw_filters(context),
                 lit=state.only_selected,
                 width=width,
@@ -112,7 +126,7 @@ def _make_view_tools(context: CurvesContext) -> list[_CurveTool]:
                 context,
                 icons.ICON_FA_PLUS,
                 "button keys add",
-                "Animate a value of the selected nodes",
+                translate("Animate a value of the selected nodes"),
                 lambda: draw_animatable(context),
             ),
         ),
@@ -140,16 +154,16 @@ def _make_key_tools(context: CurvesContext) -> list[_CurveTool]:
     ]
     tools += [
         make_menu_tool(
-            f"Handles  {icons.ICON_FA_CARET_DOWN}",
+            f"{translate('Handles')}  {icons.ICON_FA_CARET_DOWN}",
             "handles",
-            "The handles of the selected keys",
+            translate("The handles of the selected keys"),
             "keys handles",
             starts_group=True,
         ),
         make_menu_tool(
-            f"Outside  {icons.ICON_FA_CARET_DOWN}",
+            f"{translate('Outside')}  {icons.ICON_FA_CARET_DOWN}",
             "outside",
-            "Before the first and after the last key",
+            translate("Before the first and after the last key"),
             "keys outside",
         ),
     ]
@@ -168,7 +182,7 @@ def _make_panel_tools(context: CurvesContext) -> list[_CurveTool]:
                 context,
                 icons.ICON_FA_CIRCLE_QUESTION,
                 "button keys legend",
-                "Key shapes and mouse controls",
+                translate("Key shapes and mouse controls"),
                 lambda: draw_legend(context),
             ),
         ),
@@ -206,8 +220,8 @@ def _draw_ease_button(context: CurvesContext, id: str) -> None:
 
 
 def _draw_filters(context: CurvesContext) -> None:
-    for label, only in (("All Values", False), ("Selected Nodes", True)):
-        if imgui.menu_item(label, "", context.curves.only_selected == only)[0]:
+    for label, only in ((translate("All Values"), False), (translate("Selected Nodes"), True)):
+        if imgui.menu_item(make_label(label, str(only)), "", context.curves.only_selected == only)[0]:
             context.curves.only_selected = only
 
 
@@ -221,25 +235,25 @@ def draw_animatable(context: CurvesContext) -> None:
     """Draw the list of values of the selected nodes that can be animated."""
     ports = commands.list_animatable(context)
     if not ports:
-        imgui.text_colored(vec4(context.palette.dim), "Select a node with values that can be animated")
+        imgui.text_colored(vec4(context.palette.dim), translate("Select a node with values that can be animated"))
     node = ""
     for port in ports:
         if port.node != node:
             node = port.node
             imgui.separator_text(node)
-        if imgui.menu_item(f"{value_label(context.session.graph, port)}##{port}", "", False)[0]:
+        if imgui.menu_item(make_label(value_label(context.session.graph, port), str(port)), "", False)[0]:
             context.log.attempt(lambda port=port: context.session.apply(SetKey(port)))
 
 
 def draw_keys_menu(context: CurvesContext) -> None:
     """Draw the menu of the selected keys."""
     for label, menu in (
-        ("Interpolation", "keys interpolation"),
-        ("Ease", "keys ease"),
-        ("Handles", "keys handles"),
-        ("Outside of Keys", "keys outside"),
+        (translate("Interpolation"), "keys interpolation"),
+        (translate("Ease"), "keys ease"),
+        (translate("Handles"), "keys handles"),
+        (translate("Outside of Keys"), "keys outside"),
     ):
-        if imgui.begin_menu(label):
+        if imgui.begin_menu(make_label(label, menu)):
             draw_entries(context, menu)
             imgui.end_menu()
     imgui.separator()
@@ -264,14 +278,15 @@ def draw_legend(context: CurvesContext) -> None:
         )
         imgui.dummy((18 * scale, line))
         imgui.same_line()
-        imgui.text(look.title())
+        imgui.text(translate(look.title()))
         imgui.same_line(100 * scale)
-        imgui.text_colored(vec4(context.palette.dim), _MEANING[look])
+        imgui.text_colored(vec4(context.palette.dim), translate(_MEANING[look]))
     imgui.separator()
+    column = max(imgui.calc_text_size(translate(keys)).x for keys, _ in _MOUSE) + 24 * scale
     for keys, act in _MOUSE:
-        imgui.text(keys)
-        imgui.same_line(210 * scale)
-        imgui.text_colored(vec4(context.palette.dim), act)
+        imgui.text(translate(keys))
+        imgui.same_line(column)
+        imgui.text_colored(vec4(context.palette.dim), translate(act))
 
 
 __all__ = ["draw_animatable", "draw_entries", "draw_keys_menu", "draw_legend", "draw_toolbar"]

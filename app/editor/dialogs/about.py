@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...language.translation import translate
 from ..theme.style import ui_scale
 from ..toolkit.buttons import close_button, quiet_button
 from ..toolkit.dialogs import backdrop, dialog, escape_pressed
@@ -34,7 +35,10 @@ class AboutDialog:
         with dialog(self._context, "About", (440, 0)):
             with font(self._context, "bold", 26.0):
                 imgui.text_unformatted("Halation")
-            draw_wrapped(self._context.palette.dim, metadata.metadata("halation")["Summary"])
+            summary = translate(
+                "A node-graph compositor for screen-space effects: an editor, a headless renderer, graphs as JSON."
+            )
+            draw_wrapped(self._context.palette.dim, summary)
             imgui.dummy((0, 6 * ui_scale()))
             lines = list_versions()
             if imgui.begin_table("versions", 2):
@@ -48,7 +52,12 @@ class AboutDialog:
                     imgui.text_wrapped(version)
                 imgui.end_table()
             imgui.dummy((0, 6 * ui_scale()))
-            if quiet_button(self._context, f"{icons.ICON_FA_COPY}  Copy", "copy versions", "Copy for a bug report"):
+            if quiet_button(
+                self._context,
+                f"{icons.ICON_FA_COPY}  {translate('Copy')}",
+                "copy versions",
+                translate("Copy for a bug report"),
+            ):
                 self._context.clipboard.put("\n".join(f"{name}: {version}" for name, version in lines))
             imgui.same_line()
             close = close_button(self._context, "close about") or close or escape_pressed()
@@ -61,6 +70,6 @@ def list_versions() -> list[tuple[str, str]]:
     return [
         ("Halation", metadata.version("halation")),
         ("Python", platform.python_version()),
-        ("System", platform.platform(terse=True)),
+        (translate("System"), platform.platform(terse=True)),
         *((name, metadata.version(name)) for name in _LIBRARIES),
     ]

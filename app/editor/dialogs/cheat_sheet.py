@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from imgui_bundle import ImVec2, imgui
 
+from ...language.translation import translate
 from ..shared.action import ListedAction
 from ..shared.shortcut_groups import MOUSE, balance_columns, condense_rows, group_actions
 from ..theme.style import u32, ui_scale, vec4
 from ..toolkit.buttons import close_button
 from ..toolkit.dialogs import backdrop, dialog, escape_pressed
 from ..toolkit.keys import display_shortcut
+from ..toolkit.labels import translate_label
 from ..toolkit.words import draw_dim, font
 
 if TYPE_CHECKING:
@@ -37,19 +39,19 @@ class CheatSheet:
         close = backdrop(self._context, "shortcuts")
         with dialog(self._context, "Shortcuts", (_WIDTH, 0)):
             with font(self._context, "bold", 20.0):
-                imgui.text_unformatted("Shortcuts")
+                imgui.text_unformatted(translate("Shortcuts"))
             blocks = [
                 *(
-                    (title, _list_lines(self._context, actions))
+                    (translate(title, "menu"), _list_lines(self._context, actions))
                     for title, actions in group_actions(self._context.actions)
                 ),
-                ("Mouse", MOUSE),
+                (translate("Mouse"), _translate_rows(MOUSE)),
             ]
             room = imgui.get_content_region_avail().x
             count = max(int(room / (310 * ui_scale())), 1)
             columns = balance_columns(tuple(len(lines) + 2 for _, lines in blocks), count)
             _draw_columns(self._context, blocks, columns)
-            if imgui.button("Change shortcuts"):
+            if imgui.button(translate_label("Change shortcuts")):
                 self._context.dialogs.open.add("preferences")
                 close = True
             imgui.same_line()
@@ -76,9 +78,14 @@ def _draw_columns(context: DialogContext, blocks: Blocks, columns: Sequence[Sequ
 
 def _list_lines(context: DialogContext, actions: tuple[ListedAction, ...]) -> tuple[tuple[str, str], ...]:
     lines = (
-        (display_shortcut(context.actions.shortcut(action.id)), action.label.removesuffix("...")) for action in actions
+        (display_shortcut(context.actions.shortcut(action.id)), translate(action.label).removesuffix("..."))
+        for action in actions
     )
     return condense_rows(lines)
+
+
+def _translate_rows(lines: Iterable[tuple[str, str]]) -> tuple[tuple[str, str], ...]:
+    return tuple((translate(keys), translate(does)) for keys, does in lines)
 
 
 def _draw_block(context: DialogContext, title: str, lines: tuple[tuple[str, str], ...]) -> None:

@@ -6,7 +6,6 @@ date; the pictures are those of the graph that is open.
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
@@ -15,7 +14,9 @@ from imgui_bundle import ImVec2, imgui
 
 from ...authoring.preview.preview import Preview
 from ...graph import INPUTS, Graph, Port, Unknown, signature
+from ...language.translation import translate
 from ..fields.numbers import describe_default, describe_value
+from ..shared.declared_words import describe_type, head_type, name_value
 from ..theme.style import ui_scale, vec4
 from ..toolkit.buttons import close_button
 from ..toolkit.dialogs import backdrop, dialog, escape_pressed
@@ -53,21 +54,31 @@ class NodePage:
     def _draw_page(self, id: str, item: Item) -> None:
         palette, face = self._context.palette, signature(item)
         with font(self._context, "bold", 20.0):
-            imgui.text_unformatted(item.title.capitalize() if isinstance(item, Node) else id)
+            imgui.text_unformatted(head_type(item.title) if isinstance(item, Node) else id)
         height = imgui.get_content_region_avail().y - imgui.get_frame_height_with_spacing()
         imgui.begin_child("page", ImVec2(0, height), imgui.ChildFlags_.nav_flattened.value)
-        for paragraph in read_paragraphs(item):
+        for paragraph in describe_item(item):
             draw_wrapped(palette.text, paragraph)
             imgui.spacing()
         self._draw_pictures(id, face)
-        inputs = [(name, socket.doc or str(socket.kind)) for name, socket in face.unfolded_inputs.items()]
-        outputs = [(name, output.doc or str(output.kind)) for name, output in face.outputs.items()]
+        inputs = [
+            (name_value(name), translate(socket.doc) or translate(socket.kind, "kind"))
+            for name, socket in face.unfolded_inputs.items()
+        ]
+        outputs = [
+            (name_value(name), translate(output.doc) or translate(output.kind, "kind"))
+            for name, output in face.outputs.items()
+        ]
         values = [
-            (value.label or name.replace("_", " "), describe_value(value, describe_default(value)))
+            (name_value(value.label or name), describe_value(value, describe_default(value)))
             for name, value in face.values.items()
             if not value.folded
         ]
-        for title, rows in (("Inputs", inputs), ("Values", values), ("Outputs", outputs)):
+        for title, rows in (
+            (translate("Inputs"), inputs),
+            (translate("Values"), values),
+            (translate("Outputs"), outputs),
+        ):
             self._draw_rows(title, rows)
         imgui.end_child()
 
@@ -76,7 +87,9 @@ class NodePage:
         session, scale = self._context.session, ui_scale()
         before = find_picture_before(session.graph, id, face)
         prefix = "".join(f"{group}/" for group in session.place)
-        paths = [(title, prefix + path) for title, path in (("Before", before), ("After", id)) if path]
+        paths = [
+            (title, prefix + path) for title, path in ((translate("Before"), before), (translate("After"), id)) if path
+        ]
         pictures = [(title, picture) for title, path in paths if (picture := find_picture(self._context.preview, path))]
         gap = 16.0 * scale
         width = min(_PICTURE * scale, (imgui.get_content_region_avail().x - gap) / 2)
@@ -108,10 +121,9 @@ class NodePage:
             imgui.end_table()
 
 
-def read_paragraphs(item: Item) -> tuple[str, ...]:
+def describe_item(item: Item) -> tuple[str, ...]:
     """The paragraphs of what a node says about itself."""
-    doc = inspect.getdoc(type(item)) or "" if isinstance(item, Node) else ""
-    return tuple(" ".join(part.replace("`", "").split()) for part in doc.split("\n\n") if part.strip())
+    return describe_type(type(item)) if isinstance(item, Node) else ()
 
 
 def find_picture_before(graph: Graph, id: str, face: Signature) -> str:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import ImVec2, imgui
 
+from ...language.translation import mark, translate
 from ..shared.window_commands import PanelTitle
 from ..theme.style import ui_scale, vec4
 from ..toolkit.buttons import close_button
@@ -28,50 +29,80 @@ _NAMES = 230.0
 PARAGRAPHS: Mapping[PanelTitle, tuple[str, ...]] = MappingProxyType(
     {
         PanelTitle.VIEWER: (
-            "Shows a picture of the graph through a view of OpenColorIO. The wheel zooms to the pointer, the middle "
-            "button moves the picture, and a right click opens the menu.",
-            "The values of the selected node have handles on the picture. Ctrl+drag measures a rectangle, Ctrl+click "
-            "sets a marker. The line below tells the pixel under the pointer, before the view.",
+            mark(
+                "Shows a picture of the graph through a view of OpenColorIO. The wheel zooms to the "
+                "pointer, the middle button moves the picture, and a right click opens the menu."
+            ),
+            mark(
+                "The values of the selected node have handles on the picture. Ctrl+drag measures a "
+                "rectangle, Ctrl+click sets a marker. The line below tells the pixel under the pointer, "
+                "before the view."
+            ),
         ),
         PanelTitle.GRAPH: (
-            "The nodes of the document and the links between them. A double click on empty space adds a node; drag "
-            "from a socket to link it. The middle button moves the view, the wheel zooms.",
-            "Dropped files become nodes that read them. The ? in the corner explains the colors of links.",
+            mark(
+                "The nodes of the document and the links between them. A double click on empty space "
+                "adds a node; drag from a socket to link it. The middle button moves the view, the wheel "
+                "zooms."
+            ),
+            mark("Dropped files become nodes that read them. The ? in the corner explains the colors of links."),
         ),
         PanelTitle.ANIMATION: (
-            "The values that change over time, as a dope sheet or as curves. The diamond beside a value in the "
-            "inspector sets its first key.",
-            "Drag keys to move them, with Alt to scale them in time. Escape cancels a drag.",
+            mark(
+                "The values that change over time, as a dope sheet or as curves. The diamond beside a "
+                "value in the inspector sets its first key."
+            ),
+            mark("Drag keys to move them, with Alt to scale them in time. Escape cancels a drag."),
         ),
         PanelTitle.CODE: (
-            "The GLSL of a code node. Its function declares the sockets and values of the node. It is compiled a "
-            "moment after the last key; an error is shown at its line, and the last good picture stays.",
-            "The ? lists the names and files that the code can use; a click inserts one.",
+            mark(
+                "The GLSL of a code node. Its function declares the sockets and values of the node. It "
+                "is compiled a moment after the last key; an error is shown at its line, and the last "
+                "good picture stays."
+            ),
+            mark("The ? lists the names and files that the code can use; a click inserts one."),
         ),
         PanelTitle.PROBLEMS: (
-            "What is wrong with the document, and what could be better. A click shows the node, a right click copies "
-            "the sentence.",
+            mark(
+                "What is wrong with the document, and what could be better. A click shows the node, a "
+                "right click copies the sentence."
+            ),
         ),
         PanelTitle.RENDERS: (
-            "Renders the graph into files, in a separate process, while you go on with your work. Frames are one "
-            "frame, the range of the timeline, or a list such as 1-24x2,40.",
-            "The triangle of a render plays its pictures in the viewer, the columns beside it compare it with another.",
+            mark(
+                "Renders the graph into files, in a separate process, while you go on with your work. "
+                "Frames are one frame, the range of the timeline, or a list such as 1-24x2,40."
+            ),
+            mark(
+                "The triangle of a render plays its pictures in the viewer, the columns beside it "
+                "compare it with another."
+            ),
         ),
-        PanelTitle.LOG: ("All messages since the start, the newest below. A right click copies one.",),
+        PanelTitle.LOG: (mark("All messages since the start, the newest below. A right click copies one."),),
         PanelTitle.INSPECTOR: (
-            "The values of the selected node, or the controls and settings of the graph if nothing is selected. Drag "
-            "a number, with Shift finely, or click it and type; arithmetic such as +1 or *2 works.",
-            "A double click on a name resets its value. The diamond sets a key. A right click offers an expression, "
-            "and makes the value a control of the graph.",
+            mark(
+                "The values of the selected node, or the controls and settings of the graph if nothing "
+                "is selected. Drag a number, with Shift finely, or click it and type; arithmetic such as "
+                "+1 or *2 works."
+            ),
+            mark(
+                "A double click on a name resets its value. The diamond sets a key. A right click offers "
+                "an expression, and makes the value a control of the graph."
+            ),
         ),
         PanelTitle.SCOPES: (
-            "Histogram, waveform, parade and vectorscope of what the viewer shows, or of the scene-linear values. A "
-            "region of interest in the viewer limits what is measured.",
+            mark(
+                "Histogram, waveform, parade and vectorscope of what the viewer shows, or of the "
+                "scene-linear values. A region of interest in the viewer limits what is measured."
+            ),
         ),
-        PanelTitle.HISTORY: ("All steps of this session. A click goes to a step, back or forward.",),
+        PanelTitle.HISTORY: (mark("All steps of this session. A click goes to a step, back or forward."),),
         PanelTitle.PASSES: (
-            "The files that are read and the passes that run for the picture of the viewer, in their order: what each "
-            "reads, the size and format of what it makes, and its time. A click selects its nodes.",
+            mark(
+                "The files that are read and the passes that run for the picture of the viewer, in their "
+                "order: what each reads, the size and format of what it makes, and its time. A click "
+                "selects its nodes."
+            ),
         ),
     }
 )
@@ -111,16 +142,16 @@ class PanelPage:
     def _draw_page(self, title: PanelTitle) -> None:
         palette = self._context.palette
         with font(self._context, "bold", 20.0):
-            imgui.text_unformatted(title)
+            imgui.text_unformatted(translate(title))
         height = imgui.get_content_region_avail().y - imgui.get_frame_height_with_spacing()
         imgui.begin_child("page", ImVec2(0, height), imgui.ChildFlags_.nav_flattened.value)
         for paragraph in PARAGRAPHS[title]:
-            draw_wrapped(palette.text, paragraph)
+            draw_wrapped(palette.text, translate(paragraph))
             imgui.spacing()
         actions = self._list_actions(title)
         if actions:
             imgui.spacing()
-            imgui.text_colored(vec4(palette.accent), "Actions")
+            imgui.text_colored(vec4(palette.accent), translate("Actions"))
             self._draw_actions(actions)
         imgui.end_child()
 
@@ -137,8 +168,8 @@ class PanelPage:
         for action in actions:
             imgui.table_next_row()
             imgui.table_next_column()
-            imgui.text_wrapped(action.label.removesuffix("..."))
+            imgui.text_wrapped(translate(action.label).removesuffix("..."))
             imgui.table_next_column()
             keys = display_shortcut(self._context.actions.shortcut(action.id))
-            draw_wrapped(self._context.palette.dim, "  ".join(filter(None, (keys, action.doc))))
+            draw_wrapped(self._context.palette.dim, "  ".join(filter(None, (keys, translate(action.doc)))))
         imgui.end_table()

@@ -10,6 +10,7 @@ from ..shared.dialogs import Question
 from ..theme.style import ui_scale
 from ..toolkit.buttons import main_button
 from ..toolkit.dialogs import backdrop, dialog, enter_pressed, escape_pressed
+from ..toolkit.labels import make_label
 from ..toolkit.places import record
 from ..toolkit.words import font
 
@@ -59,7 +60,11 @@ def _draw_buttons(context: DialogContext, question: Question) -> int | None:
     chosen = None
     for index, label in enumerate(labels):
         name, across = f"answer {index}", 0.0 if beside else -1.0
-        if main_button(context, label, name, width=across) if index == 0 else imgui.button(label, (across, 0)):
+        if (
+            main_button(context, label, name, width=across)
+            if index == 0
+            else imgui.button(make_label(label, name), (across, 0))
+        ):
             chosen = index
         if index == 0:
             imgui.set_item_default_focus()

@@ -13,11 +13,13 @@ from msgspec.structs import replace
 from ...authoring.background.graph_export import ExportChoices, ExportOutcome, GraphExport
 from ...export.kinds import KINDS
 from ...graph import OUTPUTS, Port
+from ...language.translation import translate
 from ..shared.dialogs import Browse
 from ..theme.style import ui_scale
-from ..toolkit.buttons import main_button
+from ..toolkit.buttons import main_button, measure_buttons
 from ..toolkit.dialogs import backdrop, dialog, escape_pressed
-from ..toolkit.fields import combo, label
+from ..toolkit.fields import combo, label, measure_labels
+from ..toolkit.labels import make_label, translate_label
 from ..toolkit.places import record
 from ..toolkit.words import draw_dim, draw_wrapped, font
 
@@ -27,8 +29,9 @@ if TYPE_CHECKING:
     from .context import ExportContext
 
 _LABELS = 120.0
+_TITLES = ("Format", "Nodes", "Output", "Size", "Frames", "Colors", "Encoding", "Range")
 _TABLES = ("cube", "clf", "png")
-_PAGES = ("web", "glsl")
+_PAGES = ("web", "glsl", "wgsl", "reshade")
 _ENCODINGS = ("usual", "linear", "srgb")
 _REST = 0.4
 """Seconds after the last change until the document is tried: a size is typed in several letters."""
@@ -69,7 +72,7 @@ class ExportDialog:
         close = backdrop(self._context, "export") and not covered
         with dialog(self._context, "Export", (620, 0), top=0.4):
             with font(self._context, "bold", 18.0):
-                imgui.text_unformatted("Export")
+                imgui.text_unformatted(translate("Export"))
             imgui.dummy(ImVec2(0, 2 * ui_scale()))
             before = self._choices
             self._draw_choices()
@@ -86,10 +89,16 @@ class ExportDialog:
     # --- parts -------------------------------------------------------------------------------------------------------
 
     def _draw_choices(self) -> None:
-        label("Format", _LABELS)
+        label(translate("Format"), _label_width())
         titles = {f"{kind.name}: {kind.title}": kind.name for kind in KINDS.values()}
         current = next(title for title, name in titles.items() if name == self._choices.kind)
-        if chosen := combo(self._context, "export kind", current, tuple(titles)):
+        if chosen := combo(
+            self._context,
+            "export kind",
+            current,
+            tuple(titles),
+            show=lambda title: f"{titles[title]}: {translate(KINDS[titles[title]].title)}",
+        ):
             self._choices = ExportChoices(titles[chosen], self._choices.node, self._choices.selection)
         self._draw_selection()
         if not self._choices.selection:
@@ -106,8 +115,8 @@ class ExportDialog:
         if not ids:
             self._choices = replace(self._choices, selection="")
             return
-        label("Nodes", _LABELS)
-        is_limited = imgui.checkbox("only the selected ones##export", bool(self._choices.selection))[1]
+        label(translate("Nodes"), _label_width())
+        is_limited = imgui.checkbox(translate_label("only the selected ones"), bool(self._choices.selection))[1]
         record(self._context, "export selected")
         self._choices = replace(self._choices, selection=ids if is_limited else "")
 
@@ -117,29 +126,34 @@ class ExportDialog:
         if self._choices.node not in nodes.values():
             self._choices = replace(self._choices, node=next(iter(nodes.values()), ""))
         if len(nodes) > 1:
-            label("Output", _LABELS)
+            label(translate("Output"), _label_width())
             current = next(title for title, node in nodes.items() if node == self._choices.node)
             if chosen := combo(self._context, "export output", current, tuple(nodes)):
                 self._choices = replace(self._choices, node=nodes[chosen])
 
     def _draw_page_options(self) -> None:
-        label("Size", _LABELS)
-        size = self._draw_text("size", self._choices.size, "that of the graph, or such as 960x540")
-        label("Frames", _LABELS)
+        label(translate("Size"), _label_width())
+        size = self._draw_text("size", self._choices.size, translate("that of the graph, or such as 960x540"))
+        label(translate("Frames"), _label_width())
         current = self._context.session.time.frame
-        is_single = imgui.checkbox(f"only frame {current}##export", self._choices.frame is not None)[1]
+        is_single = imgui.checkbox(
+            make_label(translate("only frame {current}", current=current), "export frame"),
+            self._choices.frame is not None,
+        )[1]
         record(self._context, "export frame")
         self._choices = replace(self._choices, size=size, frame=current if is_single else None)
 
     def _draw_table_options(self) -> None:
-        label("Colors", _LABELS)
+        label(translate("Colors"), _label_width())
         imgui.set_next_item_width(96 * ui_scale())
-        side = imgui.input_int("along each side##export", self._choices.lut_size or 33, 0)[1]
+        side = imgui.input_int(translate_label("along each side"), self._choices.lut_size or 33, 0)[1]
         record(self._context, "export side")
-        label("Encoding", _LABELS)
+        label(translate("Encoding"), _label_width())
         encoding = combo(self._context, "export encoding", self._choices.encoding or "usual", _ENCODINGS)
-        label("Range", _LABELS)
-        color_range = self._draw_text("range", self._choices.color_range, "0 to 16, or two numbers such as 0,4")
+        label(translate("Range"), _label_width())
+        color_range = self._draw_text(
+            "range", self._choices.color_range, translate("0 to 16, or two numbers such as 0,4")
+        )
         chosen = self._choices.encoding if not encoding else "" if encoding == "usual" else encoding
         self._choices = replace(
             self._choices, lut_size=min(max(side, 2), 129), encoding=chosen, color_range=color_range
@@ -158,13 +172,18 @@ class ExportDialog:
         export = self._export or self._trial
         outcome = export.outcome if export else None
         if export is None and self._tried is not None:
-            draw_dim(self._context, "It cannot be tried: the log says why.")
+            draw_dim(self._context, translate("It cannot be tried: the log says why."))
         elif outcome is None:
-            draw_dim(self._context, "Writing..." if self._export else "Trying...")
+            draw_dim(self._context, translate("Writing...") if self._export else translate("Trying..."))
         elif outcome.fault:
             draw_wrapped(palette.error, outcome.fault)
         else:
-            draw_wrapped(palette.text, f"Written: {self._export.output}" if self._export else "It can be exported.")
+            draw_wrapped(
+                palette.text,
+                translate("Written: {output}", output=self._export.output)
+                if self._export
+                else translate("It can be exported."),
+            )
             draw_wrapped(palette.dim, describe_figures(outcome))
             for note in outcome.notes:
                 draw_wrapped(palette.warning, note)
@@ -172,22 +191,22 @@ class ExportDialog:
 
     def _draw_buttons(self) -> bool:
         """Draw the buttons; True if Close was clicked."""
-        width, trial = 96 * ui_scale(), self._trial
+        width, trial = measure_buttons(translate("Close"), translate("Export...")), self._trial
         is_ready = trial is not None and trial.outcome is not None and not trial.outcome.fault
         imgui.dummy(ImVec2(0, 4 * ui_scale()))
         if self._choices.kind == "web":
             imgui.begin_disabled(not is_ready)
-            if imgui.button("Show in browser") and trial is not None:
+            if imgui.button(translate_label("Show in browser")) and trial is not None:
                 self._context.log.attempt(lambda: self._show(trial.output))
             imgui.end_disabled()
             record(self._context, "export preview")
             imgui.same_line()
         room = imgui.get_content_region_avail().x - 2 * width - imgui.get_style().item_spacing.x
         imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + room)
-        closed = imgui.button("Close##export", ImVec2(width, 0))
+        closed = imgui.button(translate_label("Close"), ImVec2(width, 0))
         record(self._context, "export close")
         imgui.same_line()
-        if main_button(self._context, "Export...", "export write", width=width, enabled=is_ready):
+        if main_button(self._context, translate("Export..."), "export write", width=width, enabled=is_ready):
             self._ask()
         return closed
 
@@ -195,12 +214,12 @@ class ExportDialog:
 
     def _try(self) -> None:
         """Export into a temporary folder if the document or the choices have changed, a moment after the last one."""
-        wanted = self._context.session.root, self._choices
-        if wanted == self._tried or imgui.get_time() - self._changed_at < _REST:
+        trial_key = self._context.session.root, self._choices
+        if trial_key == self._tried or imgui.get_time() - self._changed_at < _REST:
             return
         if self._trial is not None:
             self._trial.stop()
-        self._tried, self._export = wanted, None
+        self._tried, self._export = trial_key, None
         self._count += 1
         name = f"{self._context.session.name}{KINDS[self._choices.kind].ending}"
         self._trial = self._begin(self._make_folder() / name)
@@ -213,7 +232,7 @@ class ExportDialog:
             target = path if path.suffix or not kind.ending else path.with_suffix(kind.ending)
             self._export = self._begin(target)
 
-        title = "Export to a folder" if not kind.ending else "Export as"
+        title = translate("Export to a folder") if not kind.ending else translate("Export as")
         name = f"{self._context.session.name}{kind.ending}"
         self._context.dialogs.browse = Browse(title, "export", write, saving=True, name=name)
 
@@ -236,12 +255,17 @@ class ExportDialog:
 
     def _show(self, page: Path) -> None:
         if not webbrowser.open(page.as_uri()):
-            self._context.log.add(f"no browser can be opened: {page} is the page", "warning")
+            self._context.log.add(translate("no browser can be opened: {page} is the page", page=page), "warning")
 
     def _stop(self) -> None:
         if self._trial is not None:
             self._trial.stop()
         self._trial = self._export = self._tried = None
+
+
+def _label_width() -> float:
+    """The width of the column of names, in units."""
+    return measure_labels(map(translate, _TITLES), _LABELS)
 
 
 def list_outputs(session: Session) -> dict[str, str]:

@@ -10,6 +10,7 @@ from types import MappingProxyType
 from halation.nodes import Unit, read_reference
 
 from ...errors import UsageError
+from ...language.translation import mark, translate
 
 LONGEST = 200
 """The most characters of an expression: a choice, so that evaluating never takes long."""
@@ -37,16 +38,16 @@ _UNITS: Mapping[str, tuple[Unit, float]] = MappingProxyType(
 )
 _WORDS: Mapping[str, str] = MappingProxyType(
     {
-        "px": "pixels (px)",
-        "height": "fractions of the picture's height (h)",
-        "deg": "degrees (deg)",
-        "EV": "stops (EV)",
-        "ratio": "a plain factor",
-        "count": "whole numbers",
-        "s": "seconds (s)",
-        "scene": "scene units",
-        "K": "kelvin (K)",
-        "mm": "millimeters (mm)",
+        "px": mark("pixels (px)"),
+        "height": mark("fractions of the picture's height (h)"),
+        "deg": mark("degrees (deg)"),
+        "EV": mark("stops (EV)"),
+        "ratio": mark("a plain factor"),
+        "count": mark("whole numbers"),
+        "s": mark("seconds (s)"),
+        "scene": mark("scene units"),
+        "K": mark("kelvin (K)"),
+        "mm": mark("millimeters (mm)"),
     }
 )
 _FAULTS = (ZeroDivisionError, OverflowError)
@@ -61,9 +62,9 @@ def evaluate(text: str, old: float = 0.0, unit: str | None = None) -> float:
         UsageError: the text is no valid expression.
     """
     if len(text) > LONGEST:
-        raise UsageError(f"this is too long for a number: use at most {LONGEST} characters")
+        raise UsageError(translate("this is too long for a number: use at most {most} characters", most=LONGEST))
     if not text.strip():
-        raise UsageError("type a number")
+        raise UsageError(translate("type a number"))
     start: list[float | str] = []
     if relative := _RELATIVE.match(text):
         start, text = [old, relative[1] or relative[2]], text[relative.end() :]
@@ -71,12 +72,16 @@ def evaluate(text: str, old: float = 0.0, unit: str | None = None) -> float:
     try:
         number = reader.read_sum()
     except _FAULTS as error:
-        fault = "divides by zero" if isinstance(error, ZeroDivisionError) else "is too large"
-        raise UsageError(f"this {fault}") from None
+        divides = isinstance(error, ZeroDivisionError)
+        raise UsageError(translate("this divides by zero") if divides else translate("this is too large")) from None
     if reader.next is not None:
-        raise UsageError(f"'{reader.next}' is not expected here" if reader.next != ")" else "a '(' is missing")
+        raise UsageError(
+            translate("'{token}' is not expected here", token=reader.next)
+            if reader.next != ")"
+            else translate("a '(' is missing")
+        )
     if not math.isfinite(number):
-        raise UsageError("this is too large")
+        raise UsageError(translate("this is too large"))
     return number
 
 
@@ -85,7 +90,12 @@ def _read_tokens(text: str, unit: str | None) -> list[float | str]:
     for match in _TOKEN.finditer(text.rstrip()):
         number, word, operator, unknown_sign = match.groups()
         if unknown_sign is not None:
-            raise UsageError(f"'{unknown_sign}' is not valid in a number: use digits, + - * / ** and ( )")
+            raise UsageError(
+                translate(
+                    "'{unknown_sign}' is not valid in a number: use digits, + - * / ** and ( )",
+                    unknown_sign=unknown_sign,
+                )
+            )
         tokens.append(operator if operator else float(number) * find_factor(word or "", unit))
     return tokens
 
@@ -98,12 +108,18 @@ def find_factor(word: str, unit: str | None) -> float:
     if word == "%":
         if unit in (None, "ratio", "height"):
             return 0.01
-        raise UsageError(f"% does not fit this value: its unit is {_WORDS[unit]}")
+        raise UsageError(translate("% does not fit this value: its unit is {meaning}", meaning=translate(_WORDS[unit])))
     if word.casefold() not in _UNITS:
-        raise UsageError(f"'{word}' is not a known unit")
+        raise UsageError(translate("'{word}' is not a known unit", word=word))
     counted_unit, factor = _UNITS[word.casefold()]
     if counted_unit != unit:
-        raise UsageError(f"'{word}' does not fit this value: its unit is {_WORDS[unit] if unit else 'a plain number'}")
+        raise UsageError(
+            translate(
+                "'{word}' does not fit this value: its unit is {meaning}",
+                word=word,
+                meaning=translate(_WORDS[unit]) if unit else translate("a plain number"),
+            )
+        )
     return factor
 
 
@@ -147,7 +163,9 @@ class _ExpressionReader:
         try:
             return math.pow(base, exponent)
         except ValueError:
-            raise UsageError(f"{base:g} ** {exponent:g} is not a number") from None
+            raise UsageError(
+                translate("{base:g} ** {exponent:g} is not a number", base=base, exponent=exponent)
+            ) from None
 
     def _read_atom(self) -> float:
         token = self.next
@@ -155,9 +173,13 @@ class _ExpressionReader:
         if isinstance(token, float | int):
             return float(token)
         if token != "(":
-            raise UsageError(f"a number is missing {'at the end' if token is None else f'before {token!r}'}")
+            raise UsageError(
+                translate("a number is missing at the end")
+                if token is None
+                else translate("a number is missing before {token!r}", token=token)
+            )
         number = self.read_sum()
         if self.next != ")":
-            raise UsageError("a ')' is missing")
+            raise UsageError(translate("a ')' is missing"))
         self._at += 1
         return number

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from .colors import RGBA
 
 _HALF_ROOT = math.sqrt(3.0) / 2.0
+"""The sine of 120 degrees, by which the primaries are apart on the wheel."""
 
 
 def split_balance(color: RGBA) -> tuple[float, float, float]:

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from halation.nodes import Plain, Value
 from imgui_bundle import imgui
 
+from ...language.translation import translate
+from ..shared.declared_words import name_choice, name_choices
 from ..theme.style import mix, u32
 from ..toolkit.fields import background, draw_arrow
 from ..toolkit.keys import is_enter_pressed
@@ -24,7 +26,7 @@ def choice_field(
 ) -> Edit | None:
     """Draw a choice field: a list in which typing searches; Ctrl and the wheel step through it."""
     assert isinstance(value, str)
-    index = choose(fields, id, value, declaration.choices, width, label=label, mixed=mixed)
+    index = choose(fields, id, name_choice(value), name_choices(declaration.choices), width, label=label, mixed=mixed)
     return None if index is None else Edit(declaration.choices[index])
 
 
@@ -79,7 +81,7 @@ def _draw_popup(
         if appearing:
             imgui.set_keyboard_focus_here()
         imgui.set_next_item_width(max(rect[2] - rect[0] - 2 * imgui.get_style().window_padding.x, line * 6))
-        _, fields.filter = imgui.input_text_with_hint("##find", "Type to find", fields.filter)
+        _, fields.filter = imgui.input_text_with_hint("##find", translate("Type to find"), fields.filter)
         word = fields.filter.strip().casefold()
     else:
         fields.filter = _extend_filter(fields.filter)
@@ -135,6 +137,6 @@ def toggle_field(
     if label:
         write((rect[0], rect[1], left, rect[3]), label, palette.dim)
     else:
-        text = NO_VALUE if mixed else "On" if value else "Off"
+        text = NO_VALUE if mixed else translate("On") if value else translate("Off")
         write((left + long + imgui.get_style().item_inner_spacing.x, rect[1], rect[2], rect[3]), text, palette.dim)
     return Edit(not value) if pressed else None

@@ -9,6 +9,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...errors import UsageError
+from ...language.translation import translate
 from ..theme.palette import RGB
 from ..toolkit.buttons import quiet_button
 from ..toolkit.fields import background
@@ -97,16 +98,21 @@ def color_picker(fields: Fields, id: str, color: RGBA, eyedropper: bool = True, 
     fields.part(f"{id} light", owner, lambda edit: edit)
     fields.part(f"{id} hex", owner, from_hex)
     color_edit = _draw_wheel(fields, id, color, width, alpha)
-    _draw_label(fields, "Intensity", side)
+    _draw_label(fields, translate("Intensity"), side)
     if edit := number_field(fields, f"{id} stops", stops, _STOPS, width - side):
         color_edit = from_stops(edit)
         fields.stops = float(edit.value) if isinstance(edit.value, int | float) else stops
     numbers = row_of_numbers(fields, f"{id} light", color, _LIGHT, width, _NAMES if alpha else _NAMES[:3])
-    _draw_label(fields, "Temperature", side)
-    tip("The color of light by its temperature: candle 1850 K, bulb 2850, noon 5500, shade 8000. It stays as bright.")
+    _draw_label(fields, translate("Temperature"), side)
+    tip(
+        translate(
+            "The color of light by its temperature: candle 1850 K, bulb 2850, noon 5500, shade 8000. "
+            "It stays as bright."
+        )
+    )
     fields.part(f"{id} kelvin", owner, from_kelvin)
     warmth = number_field(fields, f"{id} kelvin", find_temperature(color), _KELVIN, width - side, plain=True)
-    _draw_label(fields, "sRGB hex", side)
+    _draw_label(fields, translate("sRGB hex"), side)
     room = width - side - (3 if eyedropper else 2) * (imgui.get_frame_height() + imgui.get_style().item_inner_spacing.x)
     text = text_field(fields, f"{id} hex", hexadecimal(color), _TEXT, room)
     fresh = numbers or (from_kelvin(warmth) if warmth else None) or (from_hex(text) if text else None)
@@ -147,14 +153,18 @@ def _draw_buttons(fields: Fields, id: str, color: RGBA, eyedropper: bool, alpha:
     pasted = None
     gap = imgui.get_style().item_inner_spacing.x
     imgui.same_line(0.0, gap)
-    if quiet_button(fields, icons.ICON_FA_COPY, f"button copy {id}", "Copy the linear numbers"):
+    if quiet_button(fields, icons.ICON_FA_COPY, f"button copy {id}", translate("Copy the linear numbers")):
         imgui.set_clipboard_text(" ".join(f"{part:g}" for part in (color if alpha else color[:3])))
     imgui.same_line(0.0, gap)
-    if quiet_button(fields, icons.ICON_FA_PASTE, f"button paste {id}", "Paste linear numbers, or hexadecimal digits"):
+    if quiet_button(
+        fields, icons.ICON_FA_PASTE, f"button paste {id}", translate("Paste linear numbers, or hexadecimal digits")
+    ):
         pasted = _read_color(imgui.get_clipboard_text(), color)
     if eyedropper:
         imgui.same_line(0.0, gap)
-        if quiet_button(fields, icons.ICON_FA_EYE_DROPPER, f"button pick {id}", "Pick the color from the viewer"):
+        if quiet_button(
+            fields, icons.ICON_FA_EYE_DROPPER, f"button pick {id}", translate("Pick the color from the viewer")
+        ):
             fields.eyedropper = id.removesuffix(" picker")
             imgui.close_current_popup()
     return pasted

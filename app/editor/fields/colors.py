@@ -6,6 +6,7 @@ import math
 import re
 
 from ...errors import UsageError
+from ...language.translation import translate
 from ..theme.palette import RGB
 
 RGBA = tuple[float, float, float, float]
@@ -63,7 +64,9 @@ def from_hexadecimal(text: str, alpha: float = 1.0) -> RGBA:
     """The scene-linear color of sRGB digits: `#f80`, `ff8800`, `#ff880080`. Raises UsageError."""
     match = _HEX.fullmatch(text.strip())
     if match is None:
-        raise UsageError(f"'{text.strip()}' is not a color: type six hexadecimal digits, such as #ff8800")
+        raise UsageError(
+            translate("'{text}' is not a color: type six hexadecimal digits, such as #ff8800", text=text.strip())
+        )
     digits = match[1] if len(match[1]) > 4 else "".join(digit * 2 for digit in match[1])
     parts = [int(digits[at : at + 2], 16) / 255.0 for at in range(0, len(digits), 2)]
     red, green, blue = (decode(part) for part in parts[:3])

@@ -9,8 +9,10 @@ from halation.nodes import Plain, Value
 from imgui_bundle import imgui
 from msgspec import structs
 
+from ...language.translation import translate
 from ..theme.style import mix, u32, ui_scale
 from ..toolkit.fields import background
+from ..toolkit.labels import make_label, translate_label
 from ..toolkit.places import Rect, place
 from .fields import Edit, Fields
 from .number_field import row_of_numbers
@@ -159,15 +161,15 @@ def _draw_below(fields: Fields, id: str, value: tuple[float, ...], declaration: 
         edit = row_of_numbers(fields, f"{id} point", point, part, width - side - gap, ("x", "y"))
         curve_edit = whole(edit) if edit else None
         imgui.same_line(0.0, gap)
-    if imgui.button(f"Presets##{id}", (side if 0 <= index < len(value) // 2 else width, 0.0)):
+    if imgui.button(make_label(translate("Presets"), f"{id}"), (side if 0 <= index < len(value) // 2 else width, 0.0)):
         imgui.open_popup(f"presets {id}")
     if imgui.begin_popup(f"presets {id}"):
         low, high = (declaration.low, declaration.high) if math.isfinite(declaration.low) else (0.0, 1.0)
         for name, preset in CURVES.items():
-            if imgui.menu_item(name, "", False)[0]:
+            if imgui.menu_item(translate_label(name), "", False)[0]:
                 curve_edit = Edit(scale_curve(preset, low, high))
         imgui.separator()
-        if imgui.menu_item("Invert", "", False)[0]:
+        if imgui.menu_item(translate_label("Invert"), "", False)[0]:
             curve_edit = Edit(invert(value, 2, low, high))
         imgui.end_popup()
     return curve_edit

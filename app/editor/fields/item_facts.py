@@ -9,12 +9,20 @@ from typing import Any
 from halation.nodes import Items, ItemSet
 from imgui_bundle import icons_fontawesome_6 as icons
 
+from ...language.translation import mark, mark_plural, translate, translate_plural
+
 ICONS: Mapping[str, str] = MappingProxyType(
     {
         "point": icons.ICON_FA_LIGHTBULB,
         "spot": icons.ICON_FA_BULLSEYE,
         "sun": icons.ICON_FA_SUN,
         "sphere": icons.ICON_FA_CIRCLE,
+        "brush": icons.ICON_FA_PAINTBRUSH,
+        "erase": icons.ICON_FA_ERASER,
+        "clone": icons.ICON_FA_STAMP,
+        "reveal": icons.ICON_FA_FILM,
+        "blur": icons.ICON_FA_DROPLET,
+        "smear": icons.ICON_FA_HAND_POINTER,
     }
 )
 """The icons of kinds of items, by their name; other kinds have a plain one."""
@@ -38,10 +46,21 @@ def neighbor_of(items: ItemSet, name: str) -> str:
     return next(iter((*names[place + 1 : place + 2], *names[max(place - 1, 0) : place])), "")
 
 
+_COUNTS: Mapping[str, tuple[str, str, str]] = MappingProxyType(
+    {
+        "light": (mark("no lights"), *mark_plural("{count} light", "{count} lights")),
+        "shape": (mark("no shapes"), *mark_plural("{count} shape", "{count} shapes")),
+        "stroke": (mark("no strokes"), *mark_plural("{count} stroke", "{count} strokes")),
+    }
+)
+"""How many items there are, by their noun."""
+
+
 def describe_count(items: ItemSet, noun: str) -> str:
     """The number of items in words: `no lights`, `1 light`, `3 lights`."""
     count = len(items)
-    return f"no {noun}s" if not count else f"1 {noun}" if count == 1 else f"{count} {noun}s"
+    nothing, one, many = _COUNTS.get(noun, (f"no {noun}s", f"{{count}} {noun}", f"{{count}} {noun}s"))
+    return translate_plural(one, many, count) if count else translate(nothing)
 
 
 def describe_strength(fields: Mapping[str, Any]) -> str:

@@ -12,6 +12,8 @@ from types import MappingProxyType
 from halation.nodes import Value, read_reference
 
 from ...errors import UsageError
+from ...language.translation import mark, translate
+from ..shared.declared_words import name_choice
 from .arithmetic import evaluate
 
 SUFFIX: Mapping[str | None, str] = MappingProxyType(
@@ -33,17 +35,17 @@ SUFFIX: Mapping[str | None, str] = MappingProxyType(
 
 MEANING: Mapping[str | None, str] = MappingProxyType(
     {
-        "px": "pixels at full size",
-        "height": "fraction of the picture's height",
-        "deg": "degrees",
-        "EV": "photographic stops",
-        "s": "seconds",
-        "ratio": "a plain factor",
-        "count": "a whole number",
+        "px": mark("pixels at full size"),
+        "height": mark("fraction of the picture's height"),
+        "deg": mark("degrees"),
+        "EV": mark("photographic stops"),
+        "s": mark("seconds"),
+        "ratio": mark("a plain factor"),
+        "count": mark("a whole number"),
         None: "",
-        "scene": "scene units",
-        "K": "kelvin",
-        "mm": "millimeters",
+        "scene": mark("scene units"),
+        "K": mark("kelvin"),
+        "mm": mark("millimeters"),
     }
 )
 
@@ -56,8 +58,8 @@ def unit_suffix(unit: str | None) -> str:
 def unit_meaning(unit: str | None) -> str:
     """What a unit means, in words."""
     if height := read_reference(unit):
-        return f"pixels of a picture that is {height} pixels high"
-    return MEANING.get(unit, "")
+        return translate("pixels of a picture that is {height} pixels high", height=height)
+    return translate(MEANING.get(unit, ""))
 
 
 RATE = Value("rate", "float", 24.0, low=1.0, high=60.0, minimum=0.01, maximum=1000.0)
@@ -160,11 +162,13 @@ def parse_number(text: str, old: float, declaration: Value) -> float | int:
     number = evaluate(text, old, declaration.unit)
     if declaration.type == "int":
         if abs(number - round(number)) > 1e-9:
-            raise UsageError(f"{number:g} is not a whole number: type one without decimals")
+            raise UsageError(translate("{number:g} is not a whole number: type one without decimals", number=number))
         number = round(number)
     if not declaration.minimum <= number <= declaration.maximum:
-        size = "small" if number < declaration.minimum else "large"
-        raise UsageError(f"{number:g} is too {size}: type a number {_limits(declaration)}")
+        limits = _limits(declaration)
+        if number < declaration.minimum:
+            raise UsageError(translate("{number:g} is too small: type a number {limits}", number=number, limits=limits))
+        raise UsageError(translate("{number:g} is too large: type a number {limits}", number=number, limits=limits))
     return number
 
 
@@ -188,14 +192,18 @@ def step_digit(text: str, caret: int, direction: int) -> tuple[str, int]:
 
 def describe_value(declaration: Value, default: str) -> str:
     """The tooltip of a value: description, unit, range and default."""
-    lines = [declaration.doc] if declaration.doc else []
+    lines = [translate(declaration.doc)] if declaration.doc else []
     if declaration.type in ("float", "int", "vector", "curve"):
         meaning, limits = unit_meaning(declaration.unit), _limits(declaration)
         low, high = declaration.low, declaration.high
-        soft = f"usually {low:g} to {high:g}" if math.isfinite(low) and math.isfinite(high) else ""
+        soft = (
+            translate("usually {low:g} to {high:g}", low=low, high=high)
+            if math.isfinite(low) and math.isfinite(high)
+            else ""
+        )
         facts = "; ".join(part for part in (meaning, soft, limits) if part)
         lines += [facts[0].upper() + facts[1:]] if facts else []
-    return "\n".join([*lines, f"Default: {default}"] if default else lines)
+    return "\n".join([*lines, translate("Default: {default}", default=default)] if default else lines)
 
 
 def describe_default(declaration: Value) -> str:
@@ -206,10 +214,12 @@ def describe_default(declaration: Value) -> str:
             assert isinstance(default, int | float)
             return format_number(default, declaration)
         case "bool":
-            return "on" if default else "off"
-        case "choice" | "text" | "path":
+            return translate("on") if default else translate("off")
+        case "choice":
+            return name_choice(str(default))
+        case "text" | "path":
             return str(default)
-        case "curve" | "ramp" | "spline" | "items":
+        case "curve" | "ramp" | "spline" | "stroke" | "items":
             return ""
         case _:
             assert isinstance(default, tuple)
@@ -221,5 +231,9 @@ def _limits(declaration: Value) -> str:
     if math.isinf(low) and math.isinf(high):
         return ""
     if math.isinf(high):
-        return f"at least {low:g}"
-    return f"at most {high:g}" if math.isinf(low) else f"from {low:g} to {high:g}"
+        return translate("at least {low:g}", low=low)
+    return (
+        translate("at most {high:g}", high=high)
+        if math.isinf(low)
+        else translate("from {low:g} to {high:g}", low=low, high=high)
+    )

@@ -7,6 +7,8 @@ from types import MappingProxyType
 
 from halation.nodes import MAX_POINTS, curve_at, ramp_at
 
+from ...language.translation import mark
+
 Numbers = tuple[float, ...]
 
 NEAREST = 1e-3
@@ -14,20 +16,41 @@ NEAREST = 1e-3
 
 CURVES: Mapping[str, Numbers] = MappingProxyType(
     {
-        "Linear": (0.0, 0.0, 1.0, 1.0),
-        "S curve": (0.0, 0.0, 0.25, 0.15, 0.75, 0.85, 1.0, 1.0),
-        "Ease in": (0.0, 0.0, 0.5, 0.2, 1.0, 1.0),
-        "Ease out": (0.0, 0.0, 0.5, 0.8, 1.0, 1.0),
-        "Inverted": (0.0, 1.0, 1.0, 0.0),
+        mark("Linear"): (0.0, 0.0, 1.0, 1.0),
+        mark("S curve"): (0.0, 0.0, 0.25, 0.15, 0.75, 0.85, 1.0, 1.0),
+        mark("Ease in"): (0.0, 0.0, 0.5, 0.2, 1.0, 1.0),
+        mark("Ease out"): (0.0, 0.0, 0.5, 0.8, 1.0, 1.0),
+        mark("Inverted"): (0.0, 1.0, 1.0, 0.0),
     }
 )
 
 RAMPS: Mapping[str, Numbers] = MappingProxyType(
     {
-        "Black to white": (0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0),
-        "Fire": (0.0, 0.0, 0.0, 0.0, 1.0, 0.4, 0.8, 0.05, 0.0, 1.0, 0.75, 1.0, 0.5, 0.05, 1.0, 1.0, 1.0, 1.0, 0.8, 1.0),
-        "Cold to warm": (0.0, 0.02, 0.1, 0.6, 1.0, 0.5, 0.8, 0.8, 0.8, 1.0, 1.0, 0.7, 0.1, 0.02, 1.0),
-        "Spectrum": (
+        mark("Black to white"): (0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0),
+        mark("Fire"): (
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            1.0,
+            0.4,
+            0.8,
+            0.05,
+            0.0,
+            1.0,
+            0.75,
+            1.0,
+            0.5,
+            0.05,
+            1.0,
+            1.0,
+            1.0,
+            1.0,
+            0.8,
+            1.0,
+        ),
+        mark("Cold to warm"): (0.0, 0.02, 0.1, 0.6, 1.0, 0.5, 0.8, 0.8, 0.8, 1.0, 1.0, 0.7, 0.1, 0.02, 1.0),
+        mark("Spectrum"): (
             0.0,
             1.0,
             0.0,

@@ -8,7 +8,9 @@ from itertools import pairwise
 from halation.nodes import Plain, Value
 from imgui_bundle import imgui
 
+from ...language.translation import translate
 from ..theme.style import u32, ui_scale
+from ..toolkit.labels import make_label, translate_label
 from ..toolkit.places import Rect, place
 from .color_field import color_field
 from .colors import swatch
@@ -130,17 +132,17 @@ def _draw_below(fields: Fields, id: str, value: tuple[float, ...], declaration: 
         edit = number_field(fields, f"{id} place", stop[0], _PLACE, width - side - gap, label="at")
         ramp_edit = with_place(edit) if edit else None
         imgui.same_line(0.0, gap)
-    if imgui.button(f"Presets##{id}", (side if chosen else width, 0.0)):
+    if imgui.button(make_label(translate("Presets"), f"{id}"), (side if chosen else width, 0.0)):
         imgui.open_popup(f"presets {id}")
     if chosen:
         edit = color_field(fields, f"{id} color", stop[1:], _PLACE, width, eyedropper=False)
         ramp_edit = with_color(edit) if edit else ramp_edit
     if imgui.begin_popup(f"presets {id}"):
         for name, preset in RAMPS.items():
-            if imgui.menu_item(name, "", False)[0]:
+            if imgui.menu_item(translate_label(name), "", False)[0]:
                 ramp_edit = Edit(preset)
         imgui.separator()
-        if imgui.menu_item("Reverse", "", False)[0]:
+        if imgui.menu_item(translate_label("Reverse"), "", False)[0]:
             ramp_edit = Edit(invert(value, 5))
         imgui.end_popup()
     return ramp_edit

@@ -6,6 +6,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...color.primaries import REC709_LUMINANCE
+from ...language.translation import translate
 from ..theme.palette import RGB
 from ..theme.style import u32
 from ..toolkit.buttons import quiet_button
@@ -26,7 +27,7 @@ def draw_swatches(fields: Fields, id: str, color: RGBA, width: float, alpha: boo
         return None
     side, gap = imgui.get_frame_height(), (width - COLUMNS * imgui.get_frame_height()) / (COLUMNS - 1)
     swatch_edit, removed_color = None, None
-    if quiet_button(fields, icons.ICON_FA_PLUS, f"button keep {id}", "Keep this color: all pickers show it"):
+    if quiet_button(fields, icons.ICON_FA_PLUS, f"button keep {id}", translate("Keep this color: all pickers show it")):
         fields.store.add_swatch(color)
     for index, kept_color in enumerate(fields.store.current.swatches):
         if (index + 1) % COLUMNS:
@@ -35,7 +36,7 @@ def draw_swatches(fields: Fields, id: str, color: RGBA, width: float, alpha: boo
             swatch_edit = Edit(kept_color if alpha else (*kept_color[:3], color[3]))
         record(fields, f"swatch {id} {index}")
         draw_swatch(fields, item_rect(), kept_color, imgui.is_item_hovered() or imgui.is_item_focused())
-        tip(f"{hexadecimal(kept_color)}: click to use it. Right click or Delete removes it.")
+        tip(translate("{color}: click to use it. Right click or Delete removes it.", color=hexadecimal(kept_color)))
         is_deleted = imgui.is_item_focused() and imgui.is_key_pressed(imgui.Key.delete)
         if is_deleted or (imgui.is_item_hovered() and imgui.is_mouse_released(imgui.MouseButton_.right)):
             removed_color = kept_color

@@ -7,6 +7,7 @@ from functools import partial
 from halation.nodes import Plain, Value
 from imgui_bundle import imgui
 
+from ...language.translation import translate_plural
 from .choice_field import choice_field, toggle_field
 from .color_field import color_field
 from .curve_field import curve_field
@@ -53,10 +54,12 @@ def value_field(
             draw = text_field
         case "items":
             return None  # they have rows of their own in the inspector
-        case "spline":
+        case "spline" | "stroke":
             count = len(value) // declaration.length if isinstance(value, tuple) else 0
             imgui.align_text_to_frame_padding()
-            imgui.text_disabled(f"{count} point{'' if count == 1 else 's'}, moved in the viewer")
+            moved = translate_plural("{count} point, moved in the viewer", "{count} points, moved in the viewer", count)
+            drawn = translate_plural("{count} point, drawn in the viewer", "{count} points, drawn in the viewer", count)
+            imgui.text_disabled(moved if declaration.type == "spline" else drawn)
             return None
     imgui.begin_group()
     edit = draw(fields, id, value, declaration, width, label=label, mixed=mixed)

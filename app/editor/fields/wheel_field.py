@@ -9,6 +9,8 @@ from dataclasses import replace
 from halation.nodes import Value
 from imgui_bundle import imgui
 
+from ...language.translation import mark, translate
+from ..shared.declared_words import name_value
 from ..theme.style import mix, u32, ui_scale
 from ..toolkit.places import Rect, item_rect, place
 from ..toolkit.words import tip, write
@@ -23,7 +25,7 @@ _SEGMENTS = 36
 _PACE, _FINE = 0.5, 0.1
 """How far the point moves for a move of the mouse, and with Shift: a balance is a matter of small amounts."""
 
-_HINT = "Drag: balance, with Shift finely. Double click: back to gray. Escape cancels."
+_HINT = mark("Drag: balance, with Shift finely. Double click: back to gray. Escape cancels.")
 
 
 def wheel_field(fields: Fields, owner: str, color: RGBA, declaration: Value, width: float) -> Edit | None:
@@ -37,7 +39,7 @@ def wheel_field(fields: Fields, owner: str, color: RGBA, declaration: Value, wid
     level, x, y = split_balance(color)
     imgui.begin_group()
     title = place(width, line)
-    write(title, (declaration.label or declaration.name).replace("_", " "), fields.palette.dim, align=0.5)
+    write(title, name_value(declaration.label or declaration.name), fields.palette.dim, align=0.5)
     imgui.dummy((width, line))
     rect = place(width, width)
     imgui.push_item_flag(int(imgui.ItemFlags_.no_nav), True)  # arrows have nothing to press; the numbers are in reach
@@ -49,7 +51,7 @@ def wheel_field(fields: Fields, owner: str, color: RGBA, declaration: Value, wid
     _draw(fields, rect, (shown[0] / declaration.wheel, shown[1] / declaration.wheel), active or hovered)
     fields.places[id] = rect
     if not active:
-        tip(f"{declaration.doc}\n{_HINT}")
+        tip(f"{translate(declaration.doc)}\n{translate(_HINT)}")
 
     def from_level(typed: Edit) -> Edit | None:
         number = typed.value

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
+from ...language.translation import translate
 from ..theme.palette import RGB
 from ..theme.style import mix, u32, ui_scale, vec4
+from ..toolkit.labels import make_label
 from ..toolkit.places import record
 from ..toolkit.words import draw_empty_panel
 
@@ -28,9 +30,14 @@ class HistoryPanel:
         history = self._context.session.history
         if not history.steps:
             icon = icons.ICON_FA_CLOCK_ROTATE_LEFT
-            draw_empty_panel(self._context, icon, "No changes yet", "Changes appear here. Click one to go back to it.")
+            draw_empty_panel(
+                self._context,
+                icon,
+                translate("No changes yet"),
+                translate("Changes appear here. Click one to go back to it."),
+            )
             return
-        labels = ("As opened", *history.steps)
+        labels = (translate("As opened"), *history.steps)
         moved, self._seen = self._seen != (len(labels), history.position), (len(labels), history.position)
         clipper = imgui.ListClipper()
         clipper.begin(len(labels), imgui.get_text_line_height_with_spacing())
@@ -49,7 +56,7 @@ class HistoryPanel:
         color = mix(palette.dim, palette.panel, 0.35) if undone else palette.text
         imgui.push_style_color(imgui.Col_.text, vec4(palette.accent if current else color))
         imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + 20 * ui_scale())
-        if imgui.selectable(f"{label}##{index}", current)[0] and not current:
+        if imgui.selectable(make_label(label, str(index)), current)[0] and not current:
             self._context.log.attempt(lambda: self._context.session.go_to(index))
         imgui.pop_style_color()
         record(self._context, f"history {index}")

@@ -12,6 +12,7 @@ from ...errors import GraphError, UsageError
 from ...graph import Graph, Port, Unknown, find_declaration, signature
 from ...graph.named_items import describe_items
 from ...graph.scalars import describe_scalar
+from ...language.translation import translate
 from ..fields.fields import Edit
 from ..fields.numbers import parse_number
 
@@ -27,7 +28,11 @@ def apply(session: Session, ports: Ports, declaration: Value, edit: Edit) -> Non
         session.apply(SetValue(ports[0], edit.value, merge=edit.merge))
         return
     values = {port: _for_one(session, port, declaration, edit) for port in ports}
-    session.apply(SetValues(values, f"Set {declaration.name} of {len(ports)} nodes", merge=edit.merge))
+    session.apply(
+        SetValues(
+            values, translate("Set {name} of {count} nodes", name=declaration.name, count=len(ports)), merge=edit.merge
+        )
+    )
 
 
 def reset(session: Session, ports: Ports) -> None:
@@ -38,7 +43,9 @@ def reset(session: Session, ports: Ports) -> None:
     graph = session.graph
     for port in ports:
         graph = graph.animate(port, None).set(port, default_of(graph, port))
-    session.apply(ReplaceGraph(f"Reset {ports[0].socket} of {len(ports)} nodes", graph))
+    session.apply(
+        ReplaceGraph(translate("Reset {socket} of {count} nodes", socket=ports[0].socket, count=len(ports)), graph)
+    )
 
 
 def default_of(graph: Graph, port: Port) -> Plain:
@@ -100,7 +107,7 @@ def from_text(text: str) -> Any:
         isinstance(part, dict) for part in cast("dict[str, Any]", parsed).values()
     )
     if not are_items and not isinstance(parsed, int | float | bool | str | tuple):
-        raise UsageError("the clipboard holds no value: copy one first")
+        raise UsageError(translate("the clipboard holds no value: copy one first"))
     return parsed
 
 

@@ -11,6 +11,7 @@ from imgui_bundle import imgui
 from ...authoring.commands import SetColorSettings
 from ...authoring.edits import paths
 from ...color.management import ColorManager, list_builtin_configs, load_ocio
+from ...language.translation import mark, translate
 from ..fields.choice_field import choose
 from ..fields.fields import Edit, Fields
 from ..fields.text_field import text_field
@@ -18,13 +19,13 @@ from ..shared.coloring import find_color_manager
 from ..shared.dialogs import Browse
 from .rows import Rows
 
-FOUND = "detected"
+FOUND = mark("detected")
 """The choice that detects the color space from the file."""
 
 _PATH = Value("config", "path", "")
-_FROM_FILE = "choose a file…"
-_ENVIRONMENT = "$OCIO, else built in"
-_REC709 = "linear Rec.709"
+_FROM_FILE = mark("choose a file…")
+_ENVIRONMENT = mark("$OCIO, else built in")
+_REC709 = mark("linear Rec.709")
 
 
 @lru_cache(maxsize=8)
@@ -51,25 +52,29 @@ def color_rows(rows: Rows, fields: Fields) -> None:
     color = session.root.settings.color
     rows.name(
         "color config",
-        "color config",
-        doc="The OpenColorIO config that defines color spaces, displays, views and looks: a built-in one, or a file",
+        translate("color config", "value"),
+        doc=translate(
+            "The OpenColorIO config that defines color spaces, displays, views and looks: a built-in one, or a file"
+        ),
         changed=bool(color.config),
     )
-    choices = (_ENVIRONMENT, _FROM_FILE, *list_builtin_configs())
+    choices = (translate(_ENVIRONMENT), translate(_FROM_FILE), *list_builtin_configs())
     if color.config and color.config not in choices:
         edit = text_field(fields, "color config", color.config, _PATH, rows.field() - imgui.get_frame_height())
         rows.record("color config")
         if edit:
             rows.act(lambda: session.apply(SetColorSettings(config=str(edit.value))))
         imgui.same_line(0.0, 0.0)
-        if rows.icon(icons.ICON_FA_XMARK, "no color config", "Use the config that $OCIO names, or the built-in one"):
+        if rows.icon(
+            icons.ICON_FA_XMARK, "no color config", translate("Use the config that $OCIO names, or the built-in one")
+        ):
             rows.act(lambda: session.apply(SetColorSettings(config="")))
     else:
-        index = choose(fields, "color config", color.config or _ENVIRONMENT, choices, rows.field())
+        index = choose(fields, "color config", color.config or choices[0], choices, rows.field())
         rows.record("color config")
         if index == 1:
             context.dialogs.browse = Browse(
-                "Choose a Color Config",
+                translate("Choose a Color Config"),
                 "config",
                 lambda path: context.log.attempt(
                     lambda: session.apply(SetColorSettings(config=paths.make_relative(path, session.root.folder)))
@@ -83,12 +88,12 @@ def color_rows(rows: Rows, fields: Fields) -> None:
         rows.field_note(fault, rows.palette.error)
     rows.name(
         "working space",
-        "working space",
-        doc="The linear color space of pictures between nodes",
+        translate("working space", "value"),
+        doc=translate("The linear color space of pictures between nodes"),
         changed=bool(color.working),
     )
-    spaces = (_REC709, *_linear(usable))
-    index = choose(fields, "working space", color.working or _REC709, spaces, rows.field())
+    spaces = (translate(_REC709), *_linear(usable))
+    index = choose(fields, "working space", color.working or spaces[0], spaces, rows.field())
     rows.record("working space")
     if index is not None:
         working = "" if index == 0 else spaces[index]
@@ -97,10 +102,11 @@ def color_rows(rows: Rows, fields: Fields) -> None:
 
 def space_field(rows: Rows, fields: Fields, key: str, current: str, width: float) -> Edit | None:
     """Draw a choice of color spaces; "" stands for detecting it."""
-    spaces = (FOUND, *space_names(find_color_manager(rows.context)))
-    label = FOUND if current in ("", "auto") else current
+    detected = translate(FOUND)
+    spaces = (detected, *space_names(find_color_manager(rows.context)))
+    label = detected if current in ("", "auto") else current
     choices = spaces if label in spaces else (label, *spaces)
     index = choose(fields, key, label, choices, width)
     if index is None:
         return None
-    return Edit("" if choices[index] == FOUND else choices[index])
+    return Edit("" if choices[index] == detected else choices[index])

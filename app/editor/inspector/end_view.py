@@ -14,12 +14,15 @@ from ...authoring.edits.element_id import ElementId
 from ...color.display import list_views
 from ...graph import INPUTS, Input, Output, Port
 from ...graph.frames import Pattern
+from ...language.translation import mark, translate
 from ..fields.choice_field import choose
 from ..fields.color_field import color_field
 from ..fields.fields import Edit, Fields
 from ..fields.number_field import number_field, row_of_numbers
 from ..fields.text_field import text_field
 from ..shared.coloring import find_color_manager
+from ..shared.declared_words import name_choice, name_choices
+from ..toolkit.labels import make_label
 from ..toolkit.words import tip
 from .color_rows import space_field
 from .file_field import PICTURE, FileField
@@ -35,7 +38,7 @@ Then = Callable[[str], object]
 _TEXT = Value("text", "text", "")
 _NUMBER = Value("default", "float", 0.0, low=0.0, high=1.0)
 _AXES = ("x", "y", "z", "w")
-DEFAULT_VIEW = "viewer's choice"
+DEFAULT_VIEW = mark("viewer's choice")
 MISSING: tuple[Missing, ...] = get_args(Missing)
 
 
@@ -44,7 +47,7 @@ def describe_binding(session: Session, name: str) -> str:
     if session.place or name not in session.bindings:
         return ""
     file: object = session.bindings[name]
-    return file if isinstance(file, str) else "a picture in memory"
+    return file if isinstance(file, str) else translate("a picture in memory")
 
 
 class EndView:
@@ -58,8 +61,8 @@ class EndView:
         graph = rows.context.session.graph
         end = graph.inputs[port.socket] if port.node == INPUTS else graph.outputs[port.socket]
         width = str(end.width) if end.kind is Kind.VECTOR else ""
-        word = "Input" if isinstance(end, Input) else "Output"
-        draw_heading(rows, f"{end.kind}{width} {word}", rows.palette.kinds[end.kind])
+        word = translate("Input") if isinstance(end, Input) else translate("Output")
+        draw_heading(rows, f"{translate(end.kind, 'kind')}{width} {word}", rows.palette.kinds[end.kind])
         session, element = rows.context.session, ElementId.of_port(port)
         draw_name_field(rows, self._fields, element, port.socket, lambda new: session.apply(RenameEnd(element, new)))
         draw_faults(rows, element)
@@ -77,13 +80,17 @@ class EndView:
         if bound:
             rows.name(
                 f"{key} bound",
-                "bound to",
-                doc="A file that is bound in this window only. It is not saved",
+                translate("bound to", "value"),
+                doc=translate("A file that is bound in this window only. It is not saved"),
             )
-            doc = f"{bound}\nClick to use the file below instead"
+            doc = f"{bound}\n{translate('Click to use the file below instead')}"
             if rows.chip(bound, f"{key} bound", rows.field(), rows.palette.good, doc):
                 rows.act(lambda: session.bind(name, None))
-        rows.name(f"{key} file", "file", doc="The file to read unless another one is linked or bound")
+        rows.name(
+            f"{key} file",
+            translate("file", "value"),
+            doc=translate("The file to read unless another one is linked or bound"),
+        )
         edit = self._files.path(
             rows, f"{key} file", end.file, PICTURE, rows.field(), lambda path: session.apply(SetInput(name, file=path))
         )
@@ -91,35 +98,45 @@ class EndView:
             rows.act(lambda: session.apply(SetInput(name, file=str(edit.value))))
         if not bound:
             self._files.about(rows, end.file, PICTURE, end.layer)
-        rows.name(f"{key} layer", "layer", doc="The layer of that file")
+        rows.name(f"{key} layer", translate("layer", "value"), doc=translate("The layer of that file"))
         layer = self._files.layer(rows, f"{key} layer", end.file, end.layer, rows.field())
         if layer:
             rows.act(lambda: session.apply(SetInput(name, layer=str(layer.value))))
         if end.kind.is_color:
             self._space(rows, port, end, bool(bound))
         if Pattern.parse(end.file):
-            rows.name(f"{key} missing", "missing", doc="What to show at a frame that has no file")
-            index = choose(self._fields, f"{key} missing", end.missing, MISSING, rows.field())
+            rows.name(
+                f"{key} missing",
+                translate("missing", "value"),
+                doc=translate("What to show at a frame that has no file"),
+            )
+            index = choose(
+                self._fields, f"{key} missing", name_choice(end.missing), name_choices(MISSING), rows.field()
+            )
             rows.record(f"{key} missing")
             if index is not None:
                 rows.act(lambda: session.apply(SetInput(name, missing=MISSING[index])))
-        rows.name(f"{key} default", "default", doc="The value if nothing is linked, bound or read")
+        rows.name(
+            f"{key} default",
+            translate("default", "value"),
+            doc=translate("The value if nothing is linked, bound or read"),
+        )
         edit_of_default = self._default(rows, name, end, rows.field())
         if edit_of_default:
             rows.act(lambda: session.apply(SetInput(name, default=edit_of_default.value, merge=edit_of_default.merge)))
         self._text(
             rows,
             f"{key} doc",
-            "description",
+            translate("description", "value"),
             end.doc,
             lambda doc: session.apply(SetInput(name, doc=doc)),
-            "A description, shown as a tooltip",
+            translate("A description, shown as a tooltip"),
         )
 
     def _space(self, rows: Rows, port: Port, end: Input, bound: bool) -> None:
         """Draw the color space of the file of an input."""
         session, key = rows.context.session, f"{port} space"
-        rows.name(key, "color space", doc="The color space of the file")
+        rows.name(key, translate("color space", "value"), doc=translate("The color space of the file"))
         space = space_field(rows, self._fields, key, end.color_space, rows.field())
         rows.record(key)
         if space:
@@ -132,10 +149,10 @@ class EndView:
         session, key = rows.context.session, f"{Port(INPUTS, name)} default"
         channels = end.socket().channels
         if end.default is None:
-            if imgui.button(f"None##{key}", (width, 0.0)):
+            if imgui.button(make_label(translate("None"), f"{key}"), (width, 0.0)):
                 start: Scalar = 0.0 if channels == 1 else (0.0,) * channels
                 rows.act(lambda: session.apply(SetInput(name, default=start)))
-            tip("No default: link something, bind or choose a file. Click to set a default")
+            tip(translate("No default: link something, bind or choose a file. Click to set a default"))
             return None
         side = imgui.get_frame_height()
         color = end.kind.is_color
@@ -149,40 +166,55 @@ class EndView:
         else:
             edit = number_field(self._fields, key, float(end.default), _NUMBER, width - side)
         imgui.same_line(0.0, 0.0)
-        if rows.icon(icons.ICON_FA_XMARK, f"remove {key}", "No default"):
+        if rows.icon(icons.ICON_FA_XMARK, f"remove {key}", translate("No default")):
             rows.act(lambda: session.apply(SetInput(name, default=None)))
         return edit
 
     def _output(self, rows: Rows, port: Port, end: Output) -> None:
         context, name, key = rows.context, port.socket, str(port)
         session = context.session
-        rows.name(key, "from", doc="What is linked to this output", color=rows.palette.kinds[end.kind])
+        rows.name(
+            key,
+            translate("from", "value"),
+            doc=translate("What is linked to this output"),
+            color=rows.palette.kinds[end.kind],
+        )
         source, width = session.graph.links.get(port), rows.field()
         if source is not None:
             link_chip(rows, port, source, width)
         else:
             imgui.align_text_to_frame_padding()
-            imgui.text_disabled("not linked")
+            imgui.text_disabled(translate("not linked"))
         self._text(
             rows,
             f"{key} layer",
-            "layer",
+            translate("layer", "value"),
             end.layer,
             lambda layer: session.apply(SetOutput(name, layer=layer)),
-            "The name of the layer in a file with several layers",
+            translate("The name of the layer in a file with several layers"),
             hint=name,
         )
         if end.kind is Kind.IMAGE:
-            rows.name(f"{key} view", "view", doc="The view that shows it, unless you choose another one in the viewer")
+            rows.name(
+                f"{key} view",
+                translate("view", "value"),
+                doc=translate("The view that shows it, unless you choose another one in the viewer"),
+            )
             views = ("", *list_views(manager=find_color_manager(context)))
             index = choose(
-                self._fields, f"{key} view", end.view or DEFAULT_VIEW, (DEFAULT_VIEW, *views[1:]), rows.field()
+                self._fields,
+                f"{key} view",
+                end.view or translate(DEFAULT_VIEW),
+                (translate(DEFAULT_VIEW), *views[1:]),
+                rows.field(),
             )
             rows.record(f"{key} view")
             if index is not None:
                 rows.act(lambda: session.apply(SetOutput(name, view=views[index])))
-        doc = "EXR files get the pixels beyond the frame as well, as far as the overscan of the project goes."
-        rows.name(f"{key} overscan", "overscan", doc=doc, changed=end.overscan)
+        doc = translate(
+            "EXR files get the pixels beyond the frame as well, as far as the overscan of the project goes."
+        )
+        rows.name(f"{key} overscan", translate("overscan", "value"), doc=doc, changed=end.overscan)
         rows.field()
         is_changed, overscan = imgui.checkbox(f"##{key} overscan", end.overscan)
         rows.record(f"{key} overscan")

@@ -12,6 +12,7 @@ from imgui_bundle import imgui
 
 from ...authoring.edits import paths
 from ...errors import HalationError
+from ...language.translation import mark, translate
 from ...media import ImageInfo
 from ...media.sequences import find_sequence
 from ...resources.sandbox import Sandbox
@@ -33,7 +34,7 @@ _TEXT = Value("path", "text", "")
 PICTURE = Value("file", "path", "")
 """The declaration of the file of a graph input."""
 
-FIRST = "first color layer"
+FIRST = mark("first color layer")
 
 
 class FileField:
@@ -61,7 +62,7 @@ class FileField:
             value,
             _TEXT,
             width - side - rows.gap * 0.5,
-            hint="no file",
+            hint=translate("no file"),
             fault=missing,
             elide_left=True,
             lines=1,
@@ -69,7 +70,7 @@ class FileField:
         first = item_rect()
         tip(str(self._full(rows, value)) if value else "")
         imgui.same_line(0.0, rows.gap * 0.5)
-        if rows.icon(icons.ICON_FA_FOLDER_OPEN, f"browse {key}", "Choose a file"):
+        if rows.icon(icons.ICON_FA_FOLDER_OPEN, f"browse {key}", translate("Choose a file")):
             context = rows.context
             context.dialogs.browse = browse(
                 declaration,
@@ -88,7 +89,9 @@ class FileField:
         elif declaration.holds == "picture":
             header = self.known.header(self._file(rows, value))
             frames = _frames(self._full(rows, value), rows.context.session.sandbox)
-            rows.field_note(frames + describe_layer(header, layer) if isinstance(header, ImageInfo) else "reading…")
+            rows.field_note(
+                frames + describe_layer(header, layer) if isinstance(header, ImageInfo) else translate("reading…")
+            )
 
     def space(self, rows: Rows, value: str, layer: str, chosen_space: str) -> None:
         """Draw the color space of a layer: `chosen_space`, or the detected one; nothing for data."""
@@ -102,11 +105,11 @@ class FileField:
             rows.field_note(shortened_sentence, rows.palette.error if wrong else rows.palette.dim)
 
     def layer(
-        self, rows: Rows, key: str, file: str, value: str, width: float, first: str = FIRST, fault: bool = False
+        self, rows: Rows, key: str, file: str, value: str, width: float, first: str = "", fault: bool = False
     ) -> Edit | None:
         """Draw the layer: a list of those in the file, or a text field if they are unknown. `first` stands for ""."""
-        path = self._file(rows, file)
-        header = self.known.header(path) if file else "no file"
+        path, first = self._file(rows, file), first or translate(FIRST)
+        header = self.known.header(path) if file else translate("no file")
         if not isinstance(header, ImageInfo):
             return text_field(self.fields, key, value, _TEXT, width, hint=first, fault=fault)
         imgui.set_next_item_width(width)
@@ -176,4 +179,6 @@ def _frames(path: Path, sandbox: Sandbox) -> str:
         return ""
     if sequence is None or not sequence.frames:
         return ""
-    return f"frames {sequence.frames_text}{f', {sequence.missing} missing' if sequence.missing else ''} · "
+    frames = translate("frames {frames}", frames=sequence.frames_text)
+    missing = translate(", {count} missing", count=sequence.missing) if sequence.missing else ""
+    return f"{frames}{missing} · "

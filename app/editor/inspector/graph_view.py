@@ -27,11 +27,13 @@ from ...authoring.edits.naming import value_label
 from ...document.about import find_about
 from ...graph import Control, Port, Unknown, signature
 from ...graph.names import fresh_name
+from ...language.translation import translate
 from ..fields.color_field import color_field
 from ..fields.colors import decode, encode
 from ..fields.fields import Fields
 from ..fields.text_field import text_field
 from ..theme.palette import RGB
+from ..toolkit.labels import make_label
 from ..toolkit.places import item_rect
 from ..toolkit.words import tip
 from .end_view import describe_binding, draw_text
@@ -43,9 +45,7 @@ from .value_rows import ValueRows, go_to
 _TEXT = Value("name", "text", "")
 _COLOR = Value("color", "color", (0.0,) * 4, 4, low=0.0, high=1.0)
 _KINDS = tuple(
-    (f"{kind}{width}" if kind is Kind.VECTOR else f"{kind}", kind, width)
-    for kind in Kind
-    for width in ((2, 3, 4) if kind is Kind.VECTOR else (kind.facts.channels,))
+    (kind, width) for kind in Kind for width in ((2, 3, 4) if kind is Kind.VECTOR else (kind.facts.channels,))
 )
 
 
@@ -60,7 +60,9 @@ class GraphView:
         session = rows.context.session
         inside = session.place[-1] if session.place else ""
         draw_heading(
-            rows, f"Group {inside}" if inside else session.name, rows.palette.category("group" if inside else "")
+            rows,
+            translate("Group {inside}", inside=inside) if inside else session.name,
+            rows.palette.category("group" if inside else ""),
         )
         draw_faults(rows, NO_ELEMENT)
         has_controls = bool(session.graph.controls)
@@ -69,7 +71,7 @@ class GraphView:
         if has_controls:
             self._controls(rows)
         # What the graph offers comes first. So the settings of the project, which are set once, are folded then.
-        if not inside and rows.fold("Project", "project", is_open=not has_controls):
+        if not inside and rows.fold(translate("Project"), "project", is_open=not has_controls):
             self._project.draw(rows)
         self._ends(rows, "inputs")
         self._ends(rows, "outputs")
@@ -80,12 +82,12 @@ class GraphView:
         """Draw the title and color of a frame."""
         session = rows.context.session
         facts = entry(session.graph, frame)
-        draw_heading(rows, "Frame", rows.palette.accent)
+        draw_heading(rows, translate("Frame", "element"), rows.palette.accent)
         draw_text(
             rows,
             self._fields,
             f"{frame} title",
-            "title",
+            translate("title", "value"),
             str(facts.get("title", "")),
             lambda title: session.apply(EditFrame(frame, title=title)),
         )
@@ -96,7 +98,7 @@ class GraphView:
             else None
         )
         red, green, blue = color or rows.palette.raised
-        rows.name(f"{frame} color", "color")
+        rows.name(f"{frame} color", translate("color", "value"))
         light = decode(red), decode(green), decode(blue), 1.0
         edit = color_field(self._fields, f"{frame} color", light, _COLOR, rows.field(), eyedropper=False)
         if edit and isinstance(edit.value, tuple):
@@ -108,45 +110,50 @@ class GraphView:
     def comment(self, rows: Rows, comment: ElementId) -> None:
         """Draw the text of a comment."""
         session = rows.context.session
-        draw_heading(rows, "Comment", rows.palette.accent)
+        draw_heading(rows, translate("Comment"), rows.palette.accent)
         text = str(entry(session.graph, comment).get("text", ""))
-        edit = text_field(self._fields, f"{comment} text", text, _TEXT, rows.width, hint="Type a comment", lines=6)
+        edit = text_field(
+            self._fields, f"{comment} text", text, _TEXT, rows.width, hint=translate("Type a comment"), lines=6
+        )
         rows.record(f"{comment} text")
         if edit:
             rows.act(lambda: session.apply(EditComment(comment, str(edit.value))))
-        rows.note("Ctrl+Enter starts a new line.")
+        rows.note(translate("Ctrl+Enter starts a new line."))
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
     def _ends(self, rows: Rows, side: str) -> None:
         session = rows.context.session
         ends = session.graph.inputs if side == "inputs" else session.graph.outputs
-        rows.draw_heading(side.title())
-        rows.fit((f"{end.kind}2" for end in ends.values()), least=0.0)
+        rows.draw_heading(translate("Inputs") if side == "inputs" else translate("Outputs"))
+        rows.fit((f"{translate(end.kind, 'kind')}2" for end in ends.values()), least=0.0)
         for name, end in ends.items():
             key = f"{side}.{name}"
             width = str(end.width) if end.kind is Kind.VECTOR else ""
-            rows.name(f"{key} row", f"{end.kind}{width}", color=rows.palette.kinds[end.kind])
+            rows.name(f"{key} row", f"{translate(end.kind, 'kind')}{width}", color=rows.palette.kinds[end.kind])
             room = rows.field() - imgui.get_frame_height() * 2
             edit = text_field(self._fields, f"{key} row", name, _TEXT, room)
             rows.record(f"{key} row")
             if edit:
                 rows.act(lambda key=key, edit=edit: session.apply(RenameEnd(ElementId(key), str(edit.value))))
             imgui.same_line(0.0, 0.0)
-            if rows.icon(icons.ICON_FA_ARROW_RIGHT, f"go {key}", "Select it"):
+            if rows.icon(icons.ICON_FA_ARROW_RIGHT, f"go {key}", translate("Select it")):
                 rows.act(lambda name=name: go_to(rows.context, Port(side, name)))
             imgui.same_line(0.0, 0.0)
-            if rows.icon(icons.ICON_FA_XMARK, f"remove {key}", "Remove it and its links"):
+            if rows.icon(icons.ICON_FA_XMARK, f"remove {key}", translate("Remove it and its links")):
                 rows.act(lambda key=key: session.apply(RemoveEnd(ElementId(key))))
             if side == "inputs":
                 text, color = _comes_in(rows, name)
                 rows.field_note(text, color)
         word = side[:-1]
-        if rows.wide_button(f"{icons.ICON_FA_PLUS}  Add {word.title()}", f"add {word}"):
+        title = translate("Add Input") if side == "inputs" else translate("Add Output")
+        if rows.wide_button(f"{icons.ICON_FA_PLUS}  {title}", f"add {word}"):
             imgui.open_popup(f"kinds {side}")
         if imgui.begin_popup(f"kinds {side}"):
-            for label, kind, width in _KINDS:
-                chosen = imgui.menu_item(label, "", False)[0]
+            for kind, width in _KINDS:
+                number = width if kind is Kind.VECTOR else ""
+                label = f"{kind}{number}"
+                chosen = imgui.menu_item(make_label(f"{translate(kind, 'kind')}{number}", label), "", False)[0]
                 rows.context.places[f"menu {label}"] = item_rect()
                 if chosen:
                     name = fresh_name(kind.lower(), ends)
@@ -156,13 +163,13 @@ class GraphView:
 
     def _controls(self, rows: Rows) -> None:
         session = rows.context.session
-        rows.draw_heading("Controls")
+        rows.draw_heading(translate("Controls"))
         rows.fit(control.label or name for name, control in session.graph.controls.items())
         if not session.graph.controls:
-            rows.note("Values that this graph offers on the command line, and when it is used as a group.")
+            rows.note(translate("Values that this graph offers on the command line, and when it is used as a group."))
         for name, control in session.graph.controls.items():
             self._control(rows, name, control)
-        if rows.wide_button(f"{icons.ICON_FA_PLUS}  Add Control", "add control"):
+        if rows.wide_button(f"{icons.ICON_FA_PLUS}  {translate('Add Control')}", "add control"):
             imgui.open_popup("add control")
         if imgui.begin_popup("add control"):
             self._candidates(rows)
@@ -180,11 +187,11 @@ class GraphView:
         else:
             rows.name(key, name)
             rows.field()
-            rows.note("its value no longer exists", rows.palette.error)
+            rows.note(translate("its value no longer exists"), rows.palette.error)
         imgui.push_style_color(imgui.Col_.text, imgui.get_color_u32((*rows.palette.dim, 1.0)))
-        opened = imgui.tree_node(f"{target}##{key}")
+        opened = imgui.tree_node(make_label(str(target), key))
         imgui.pop_style_color()
-        tip("Name, label and description of the control")
+        tip(translate("Name, label and description of the control"))
         rows.context.places[f"more {key}"] = item_rect()
         if opened:
             self._control_details(rows, name, control, declaration)
@@ -197,7 +204,7 @@ class GraphView:
             inner,
             self._fields,
             f"{key} name",
-            "name",
+            translate("name", "value"),
             name,
             lambda new: session.apply(RenameControl(name, new)),
         )
@@ -205,7 +212,7 @@ class GraphView:
             inner,
             self._fields,
             f"{key} label",
-            "label",
+            translate("label", "value"),
             control.label,
             lambda label: session.apply(DescribeControl(name, label=label)),
             hint=name,
@@ -214,15 +221,15 @@ class GraphView:
             inner,
             self._fields,
             f"{key} doc",
-            "description",
+            translate("description", "value"),
             control.doc,
             lambda doc: session.apply(DescribeControl(name, doc=doc)),
-            hint=declaration.doc if declaration else "",
+            hint=translate(declaration.doc) if declaration else "",
         )
-        if imgui.small_button(f"{icons.ICON_FA_ARROW_RIGHT}  Go to Node##{key}"):
+        if imgui.small_button(make_label(f"{icons.ICON_FA_ARROW_RIGHT}  {translate('Go to Node')}", f"go {key}")):
             rows.act(lambda: go_to(rows.context, control.target))
         imgui.same_line()
-        if imgui.small_button(f"{icons.ICON_FA_XMARK}  Remove##{key}"):
+        if imgui.small_button(make_label(f"{icons.ICON_FA_XMARK}  {translate('Remove')}", f"remove {key}")):
             rows.act(lambda: session.apply(HideControl(name)))
 
     def _candidates(self, rows: Rows) -> None:
@@ -241,11 +248,11 @@ class GraphView:
                 continue
             has_candidates = True
             for port in ports:
-                if imgui.menu_item(f"{value_label(session.graph, port)}##{port}", "", False)[0]:
+                if imgui.menu_item(make_label(value_label(session.graph, port), str(port)), "", False)[0]:
                     rows.act(lambda port=port: session.apply(ExposeValue(port)))
             imgui.end_menu()
         if not has_candidates:
-            imgui.text_disabled("There is no other value to expose")
+            imgui.text_disabled(translate("There is no other value to expose"))
 
 
 def _comes_in(rows: Rows, name: str) -> tuple[str, RGB]:
@@ -254,14 +261,14 @@ def _comes_in(rows: Rows, name: str) -> tuple[str, RGB]:
     end = session.graph.inputs[name]
     bound = describe_binding(session, name)
     if bound:
-        return f"bound to {PurePath(bound).name}", palette.good
+        return translate("bound to {name}", name=PurePath(bound).name), palette.good
     if end.file:
-        return f"reads {PurePath(end.file).name}", palette.dim
+        return translate("reads {name}", name=PurePath(end.file).name), palette.dim
     if end.default is not None:
         parts = end.default if isinstance(end.default, tuple) else (end.default,)
-        return f"default {' '.join(f'{part:g}' for part in parts)}", palette.dim
+        return translate("default {numbers}", numbers=" ".join(f"{part:g}" for part in parts)), palette.dim
     return (
-        ("linked where the group is used", palette.dim)
+        (translate("linked where the group is used"), palette.dim)
         if session.place
-        else ("no file and no default", palette.warning)
+        else (translate("no file and no default"), palette.warning)
     )

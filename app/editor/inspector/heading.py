@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
@@ -13,8 +12,10 @@ from imgui_bundle import imgui
 from ...authoring.edits.coding import LANGUAGES
 from ...authoring.edits.element_id import ElementId
 from ...graph import Group, Item
+from ...language.translation import translate
 from ..fields.fields import Fields
 from ..fields.text_field import text_field
+from ..shared.declared_words import describe_type, head_type
 from ..theme.palette import RGB
 from ..theme.style import EM, u32, ui_scale
 from ..toolkit.places import item_rect, place
@@ -50,7 +51,7 @@ def draw_name_field(
     rows: Rows, fields: Fields, key: str, name: str, then: Callable[[str], object], doc: str = ""
 ) -> None:
     """Draw the editable name of an element."""
-    rows.name(f"{key} name", "name", doc=doc)
+    rows.name(f"{key} name", translate("name", "value"), doc=doc)
     edit = text_field(fields, f"{key} name", name, _NAME, rows.field())
     rows.record(f"{key} name")
     if edit:
@@ -90,13 +91,13 @@ def draw_faults(rows: Rows, element: ElementId) -> None:
 def title_of(item: Item) -> str:
     """The title of a node's type."""
     if isinstance(item, Node):
-        return " ".join(word[:1].upper() + word[1:] for word in item.title.split())
-    return "Group" if isinstance(item, Group) else LANGUAGES.get(item.type, item.type)
+        return head_type(item.title)
+    return translate("Group", "element") if isinstance(item, Group) else LANGUAGES.get(item.type, item.type)
 
 
 def doc_of(item: Item) -> str:
     """The docstring of a node type."""
-    return inspect.getdoc(type(item)) or "" if isinstance(item, Node) else ""
+    return "\n\n".join(describe_type(type(item))) if isinstance(item, Node) else ""
 
 
 def _join_lines(doc: str) -> str:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
+from ...language.translation import translate
 from ..fields.fields import Fields
 from ..theme.palette import DARK
 from .end_view import EndView
@@ -58,7 +59,7 @@ class Inspector:
         session = rows.context.session
         graph, active = session.graph, session.active
         if session.borrowed:
-            sentence = f"This group comes from {session.borrowed}: make it local to edit it here."
+            sentence = translate("This group comes from {file}: make it local to edit it here.", file=session.borrowed)
             rows.note(sentence, rows.palette.warning)
         nodes = tuple(sorted(session.selection & graph.nodes.keys(), key=lambda id: (id != active, id)))
         if len(nodes) > 1:
@@ -72,8 +73,8 @@ class Inspector:
         elif active.kind == "comment":
             self._graph.comment(rows, active)
         elif active.kind == "dot":
-            draw_heading(rows, "Dot", rows.palette.dim)
-            rows.note("A dot only routes links. It does not change the picture.")
+            draw_heading(rows, translate("Dot"), rows.palette.dim)
+            rows.note(translate("A dot only routes links. It does not change the picture."))
         else:
             self._graph.draw(rows)
         imgui.dummy((1.0, imgui.get_font_size()))

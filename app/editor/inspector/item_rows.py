@@ -13,13 +13,16 @@ from halation.nodes import Items, ItemSet
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ...authoring.commands import AddItem, DuplicateItem, RemoveItem, RenameItem, SetValue
+from ...authoring.commands import AddItem, DuplicateItem, ExchangeItems, RemoveItem, RenameItem, SetValue
 from ...graph import Port
 from ...graph.named_items import KIND, join_path
+from ...language.translation import mark, translate
 from ..fields.colors import swatch
 from ..fields.item_facts import choose_item, describe_count, describe_strength, icon_of, neighbor_of
+from ..shared.declared_words import name_choice, raise_first
 from ..theme.style import mix, u32, ui_scale, vec4
 from ..toolkit.buttons import dropdown, quiet_button
+from ..toolkit.labels import make_label
 from ..toolkit.places import Rect, item_rect, place
 from ..toolkit.words import tip, write
 from .heading import draw_name_field
@@ -83,7 +86,12 @@ class ItemRows:
             f"{self.port}.{name}",
             name,
             self._rename,
-            f"The name of the {self.declared.noun}: {self.port}.{name}",
+            translate(
+                "The name of the {noun}: {port}.{name}",
+                noun=translate(self.declared.noun, "item"),
+                port=self.port,
+                name=name,
+            ),
         )
         for field in (KIND, *kind.fields):
             if len(self.declared.kinds) > 1 or field != KIND:
@@ -186,17 +194,33 @@ class ItemRows:
     # --- what is done to it ------------------------------------------------------------------------------------------
 
     def _list_actions(self) -> tuple[_ItemAction, ...]:
-        name, session = self.chosen, self.rows.context.session
+        name, session, names = self.chosen, self.rows.context.session, list(self.items)
         has_room = len(self.items) < self.declared.most
         return (
             _ItemAction(
                 icons.ICON_FA_CLONE,
-                "Duplicate",
+                mark("Duplicate"),
                 lambda: self._choose(session.apply(DuplicateItem(self.port, name))),
                 bool(name) and has_room,
             ),
-            _ItemAction(icons.ICON_FA_TRASH, "Remove", self._remove, bool(name)),
+            _ItemAction(icons.ICON_FA_TRASH, mark("Remove"), self._remove, bool(name)),
+            *(self._list_moves(name, names) if self.declared.ordered else ()),
         )
+
+    def _list_moves(self, name: str, names: list[str]) -> tuple[_ItemAction, ...]:
+        """Up and down, as far as the list goes."""
+        up, down = icons.ICON_FA_ARROW_UP, icons.ICON_FA_ARROW_DOWN
+        return (
+            _ItemAction(up, mark("Move up"), lambda: self._move(-1), name not in ("", *names[:1])),
+            _ItemAction(down, mark("Move down"), lambda: self._move(1), name not in ("", *names[-1:])),
+        )
+
+    def _move(self, step: int) -> None:
+        """Exchange the selected item with the one before or after it; it stays selected."""
+        names = list(self.items)
+        other = names[names.index(self.chosen) + step]
+        self.rows.context.session.apply(ExchangeItems(self.port, self.chosen, other))
+        self._choose(other)
 
     def _remove(self) -> None:
         name = self.chosen
@@ -216,7 +240,7 @@ class ItemRows:
         if not imgui.begin_popup(_MENU):
             return
         for act in self._list_actions():
-            if imgui.menu_item(f"{act.icon}  {act.label}", "", False, act.enabled)[0]:
+            if imgui.menu_item(make_label(f"{act.icon}  {translate(act.label)}", act.label), "", False, act.enabled)[0]:
                 self.rows.act(act.do)
             self.rows.fields.places[f"menu {act.label}"] = item_rect()
         imgui.end_popup()
@@ -228,15 +252,22 @@ class ItemRows:
         def draw_kinds() -> None:
             for kind in self.declared.kinds:
                 label = kind.name.capitalize()
-                if imgui.menu_item(f"{icon_of(kind.name)}  {label}", "", False, has_room)[0]:
+                shown = make_label(f"{icon_of(kind.name)}  {raise_first(name_choice(kind.name))}", label)
+                if imgui.menu_item(shown, "", False, has_room)[0]:
                     rows.act(lambda name=kind.name: self._choose(session.apply(AddItem(self.port, name))))
-                tip(kind.doc)
+                tip(translate(kind.doc))
                 rows.fields.places[f"menu {label}"] = item_rect()
 
-        dropdown(rows.fields, icons.ICON_FA_PLUS, f"button add {self.port}", f"Add a {noun}", draw_kinds)
+        dropdown(
+            rows.fields,
+            icons.ICON_FA_PLUS,
+            f"button add {self.port}",
+            translate("Add a {noun}", noun=translate(noun, "item")),
+            draw_kinds,
+        )
         for act in self._list_actions():
             imgui.same_line(0.0, 0.0)
-            doc = f"{act.label}: the selected {noun}"
+            doc = translate("{act}: the selected {noun}", act=translate(act.label), noun=translate(noun, "item"))
             key = f"button {act.label.lower()} {self.port}"
             if quiet_button(rows.fields, act.icon, key, doc, enabled=act.enabled):
                 rows.act(act.do)
@@ -261,11 +292,15 @@ _SWITCHES = (
         "solo",
         icons.ICON_FA_STAR,
         icons.ICON_FA_STAR_HALF_STROKE,
-        "Solo: only this light and other solo lights are on. Click to end it",
-        "Click for solo: only this light is on",
+        mark("Solo: only this light and other solo lights are on. Click to end it"),
+        mark("Click for solo: only this light is on"),
     ),
     _Switch(
-        "on", icons.ICON_FA_EYE, icons.ICON_FA_EYE_SLASH, "On. Click to switch it off", "Off. Click to switch it on"
+        "on",
+        icons.ICON_FA_EYE,
+        icons.ICON_FA_EYE_SLASH,
+        mark("On. Click to switch it off"),
+        mark("Off. Click to switch it on"),
     ),
 )
 

@@ -16,11 +16,13 @@ from ...authoring.edits.values import find_expression_fault
 from ...document.animation import describe_animation, read_animation
 from ...errors import GraphError, UsageError
 from ...graph import Animation, Expression, Keys, Port
+from ...language.translation import mark, translate
 from ..fields.fields import Fields
 from ..fields.text_entry import text_entry
 from ..theme.palette import RGB, Palette
 from ..theme.style import mix, u32, ui_scale
 from ..toolkit.fields import background
+from ..toolkit.labels import make_label
 from ..toolkit.places import Rect, item_rect, place
 from ..toolkit.words import SMALL, draw_wrapped, font, note_below, tip
 from .rows import DIAMOND_WIDTH
@@ -33,10 +35,10 @@ if TYPE_CHECKING:
 Look = Literal["still", "keys", "key", "expression"]
 
 _DOCS: dict[Look, str] = {
-    "still": "Not animated. Click to set a key at this frame",
-    "keys": "Animated. Click to set a key at this frame",
-    "key": "Key at this frame. Click to remove it",
-    "expression": "Driven by an expression",
+    "still": mark("Not animated. Click to set a key at this frame"),
+    "keys": mark("Animated. Click to set a key at this frame"),
+    "key": mark("Key at this frame. Click to remove it"),
+    "expression": mark("Driven by an expression"),
 }
 
 
@@ -87,7 +89,12 @@ def toggle(session: Session, ports: Ports) -> None:
         else:
             animations[port] = (keys or Keys()).set(session.time.frame, to_scalar(session.time.evaluate(port)))
     session.apply(
-        AnimateValues(animations, f"{'Remove keys' if removes else 'Key'} {ports[0].socket} of {len(ports)} nodes")
+        AnimateValues(
+            animations,
+            translate("Remove keys {socket} of {count} nodes", socket=ports[0].socket, count=len(ports))
+            if removes
+            else translate("Key {socket} of {count} nodes", socket=ports[0].socket, count=len(ports)),
+        )
     )
 
 
@@ -111,7 +118,7 @@ class Keying:
         rows.context.places[f"diamond {port}"] = rect
         hovered = imgui.is_item_hovered()
         _paint(rows.palette, rect, look, hovered)
-        tip(_DOCS[look])
+        tip(translate(_DOCS[look]))
         if pressed and look == "expression":
             self.begin(session, port)
         elif pressed:
@@ -190,12 +197,14 @@ class Keying:
         is_single, keyed = len(ports) == 1, look in ("keys", "key")
 
         def entry(icon: str, label: str, enabled: bool, act: Callable[[], object]) -> None:
-            if imgui.menu_item(f"{icon}  {label}", "", False, enabled)[0]:
+            if imgui.menu_item(make_label(f"{icon}  {translate(label)}", label), "", False, enabled)[0]:
                 rows.act(act)
             context.places[f"menu {label}"] = item_rect()
 
         def all_still() -> None:
-            session.apply(AnimateValues(dict.fromkeys(ports), f"Remove animation of {ports[0].socket}"))
+            session.apply(
+                AnimateValues(dict.fromkeys(ports), translate("Remove animation of {socket}", socket=ports[0].socket))
+            )
 
         def jump(frame: int | None) -> None:
             if frame is not None:
@@ -203,34 +212,41 @@ class Keying:
                 session.time.seek(frame)
 
         imgui.separator()
-        entry(icons.ICON_FA_DIAMOND, "Set Key", look in ("still", "keys"), lambda: toggle(session, ports))
-        entry(icons.ICON_FA_MINUS, "Remove Key", look == "key", lambda: toggle(session, ports))
-        entry(icons.ICON_FA_ERASER, "Remove All Keys", keyed, all_still)
+        entry(icons.ICON_FA_DIAMOND, mark("Set Key"), look in ("still", "keys"), lambda: toggle(session, ports))
+        entry(icons.ICON_FA_MINUS, mark("Remove Key"), look == "key", lambda: toggle(session, ports))
+        entry(icons.ICON_FA_ERASER, mark("Remove All Keys"), keyed, all_still)
         entry(
             icons.ICON_FA_CHEVRON_LEFT,
-            "Previous Key",
+            mark("Previous Key"),
             keyed and session.time.find_previous_key(port) is not None,
             lambda: jump(session.time.find_previous_key(port)),
         )
         entry(
             icons.ICON_FA_CHEVRON_RIGHT,
-            "Next Key",
+            mark("Next Key"),
             keyed and session.time.find_next_key(port) is not None,
             lambda: jump(session.time.find_next_key(port)),
         )
         imgui.separator()
-        entry(icons.ICON_FA_SUPERSCRIPT, "Expression...", is_single, lambda: self.begin(session, port, field_text))
-        entry(icons.ICON_FA_XMARK, "Remove Expression", look == "expression", all_still)
+        entry(
+            icons.ICON_FA_SUPERSCRIPT, mark("Expression..."), is_single, lambda: self.begin(session, port, field_text)
+        )
+        entry(icons.ICON_FA_XMARK, mark("Remove Expression"), look == "expression", all_still)
         entry(
             icons.ICON_FA_BARS_STAGGERED,
-            "Bake to Keys",
+            mark("Bake to Keys"),
             is_single and look != "still",
             lambda: session.apply(BakeKeys(port)),
         )
         entry(
-            icons.ICON_FA_COPY, "Copy Animation", look != "still", lambda: context.clipboard.put(as_text(session, port))
+            icons.ICON_FA_COPY,
+            mark("Copy Animation"),
+            look != "still",
+            lambda: context.clipboard.put(as_text(session, port)),
         )
-        entry(icons.ICON_FA_PASTE, "Paste Animation", True, lambda: paste(session, ports, context.clipboard.get()))
+        entry(
+            icons.ICON_FA_PASTE, mark("Paste Animation"), True, lambda: paste(session, ports, context.clipboard.get())
+        )
 
     def _draw_typing(self, rows: Rows, port: Port, id: str, text: str, width: float) -> None:
         """Draw the expression field while the user types in it.
@@ -275,9 +291,11 @@ def paste(session: Session, ports: Ports, text: str) -> None:
     try:
         raw = json.loads(text)["animation"]
     except (ValueError, TypeError, KeyError):
-        raise UsageError("the clipboard holds no animation: copy one first") from None
-    animation = read_animation(raw, "clipboard", "$.animation")
-    session.apply(AnimateValues(dict.fromkeys(ports, animation), f"Paste animation of {ports[0].socket}"))
+        raise UsageError(translate("the clipboard holds no animation: copy one first")) from None
+    animation = read_animation(raw, "clipboard", "$.animation", session.graph.declaration(ports[0]))
+    session.apply(
+        AnimateValues(dict.fromkeys(ports, animation), translate("Paste animation of {socket}", socket=ports[0].socket))
+    )
 
 
 def _paint(palette: Palette, rect: Rect, look: Look, hovered: bool) -> None:

@@ -14,6 +14,7 @@ from ...color.file_space import FileSpace
 from ...color.management import ColorManager
 from ...color.transforms import Array
 from ...errors import HalationError
+from ...language.translation import translate
 from ...media import ImageInfo, find_layer, read_info, read_layer
 from ...media.color_spaces import find_layer_spaces
 from ...resources.sandbox import Sandbox
@@ -21,6 +22,7 @@ from ...watch.versions import FileVersions
 
 WIDTH, HEIGHT = 96, 54
 _KEPT = 300
+"""Thumbnails and layers of files that are kept: several renders of fifty layers each. Chosen by judgement."""
 _NOTHING = 1e9
 """The depth from which on there is only background."""
 
@@ -93,7 +95,7 @@ class Layers:
         except HalationError as fault:
             return str(fault)
         except Exception as fault:
-            return f"{path}: cannot be shown ({fault})"
+            return translate("{path}: cannot be shown ({fault})", path=path, fault=fault)
 
     def _find_spaces(self, key: SpaceKey) -> Mapping[str, FileSpace] | str:
         path, _, manager, chosen_space = key
@@ -102,7 +104,7 @@ class Layers:
         except HalationError as fault:
             return str(fault)
         except Exception as fault:
-            return f"{path}: cannot be read ({fault})"
+            return translate("{path}: cannot be read ({fault})", path=path, fault=fault)
 
 
 def small_picture(path: str, layer: str, header: ImageInfo, sandbox: Sandbox) -> Array:

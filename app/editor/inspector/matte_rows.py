@@ -10,9 +10,11 @@ from imgui_bundle import imgui
 
 from ...authoring.commands import SetValue
 from ...graph import Port
+from ...language.translation import mark, translate
 from ..fields.fields import Fields
 from ..shared.render_facts import matte_at
 from ..theme.style import mix, u32, ui_scale, vec4
+from ..toolkit.labels import make_label
 from ..toolkit.places import item_rect, place
 from ..toolkit.words import SMALL, font, write
 
@@ -42,16 +44,24 @@ class MatteRows:
         """Draw the names of one node; a click picks a name, or unpicks it."""
         matte, key = matte_at(rows.context, port.node), str(port)
         if not isinstance(matte, Matte):
-            if matte and matte != "no file":
+            if matte and matte != translate("no file"):
                 rows.field_note(matte, rows.palette.warning)
             return
         if not matte.ids:
-            rows.field_note("The file has no manifest. Type the names; they are hashed as the renderer does.")
+            rows.field_note(
+                translate("The file has no manifest. Type the names; they are hashed as the renderer does.")
+            )
             return
         session = rows.context.session
         pick = str(session.graph.value(port))
         picked = self._of(pick, matte)
-        rows.field_note(f"{len(picked)} of {len(matte.ids)} selected. You can also click in the viewer.")
+        rows.field_note(
+            translate(
+                "{count} of {total} selected. You can also click in the viewer.",
+                count=len(picked),
+                total=len(matte.ids),
+            )
+        )
         if session.graph.links.get(port) is not None:
             return
         names = self._find_names(rows, key, matte)
@@ -80,7 +90,7 @@ class MatteRows:
             return names
         rows.indent()
         imgui.set_next_item_width(rows.field_width)
-        hint = "Find a name"
+        hint = translate("Find a name")
         _, text = imgui.input_text_with_hint(f"##search {key}", hint, self._search.get(key, ""))
         self._search[key] = text
         rows.context.places[f"search {key}"] = item_rect()
@@ -104,7 +114,7 @@ class MatteRows:
         self._seek = ""
         imgui.push_style_var(imgui.StyleVar_.item_spacing, (0.0, 0.0))
         if not names:
-            write(place(rows.field_width, height), "no name matches", rows.palette.dim, align=0.5)
+            write(place(rows.field_width, height), translate("no name matches"), rows.palette.dim, align=0.5)
         clipper = imgui.ListClipper()
         clipper.begin(len(names), height)
         while clipper.step():
@@ -147,8 +157,8 @@ class MatteRows:
         rows.indent()
         width = (rows.field_width - rows.gap) / 2
         with font(rows.context, "text", SMALL):
-            for label, pick in (("All", "*"), ("None", "")):
-                if imgui.button(f"{label}##{port} {label}", (width, 0.0)):
+            for label, pick in ((mark("All"), "*"), (mark("None"), "")):
+                if imgui.button(make_label(translate(label), f"{port} {label}"), (width, 0.0)):
                     rows.act(lambda pick=pick: session.apply(SetValue(port, pick)))
                 rows.context.places[f"button {label} {port}"] = item_rect()
                 if not pick:

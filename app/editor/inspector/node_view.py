@@ -16,8 +16,11 @@ from ...authoring.edits.coding import LANGUAGES
 from ...authoring.edits.element_id import ElementId
 from ...custom_nodes import Code
 from ...graph import Group, Item, Port, Signature, Unknown, signature
+from ...language.translation import translate, translate_plural
 from ..fields.fields import Fields
+from ..shared.declared_words import name_value
 from ..shared.render_facts import render_path
+from ..toolkit.labels import make_label
 from ..toolkit.places import item_rect
 from ..toolkit.words import tip
 from .applying import common
@@ -42,7 +45,7 @@ class NodeView:
         session = rows.context.session
         item = session.graph.nodes[id]
         face = signature(item)
-        rows.fit(("name", *face.unfolded_inputs, *_list_labels(face)))
+        rows.fit((translate("name", "value"), *map(name_value, face.unfolded_inputs), *_list_labels(face)))
         draw_heading(
             rows, title_of(item), rows.palette.category(_category(item)), lambda: self._draw_buttons(rows, id, item), 3
         )
@@ -52,7 +55,7 @@ class NodeView:
             id,
             id,
             lambda new: session.apply(RenameNode(id, new)),
-            "The name of the node",
+            translate("The name of the node"),
         )
         self._explained = draw_explanation(rows, doc_of(item), self._explained)
         draw_faults(rows, ElementId(id))
@@ -63,10 +66,10 @@ class NodeView:
             if isinstance(item, Unknown):
                 return
         if isinstance(item, Unknown):
-            rows.note("This node type is not installed. The node does nothing and is saved unchanged.")
+            rows.note(translate("This node type is not installed. The node does nothing and is saved unchanged."))
             return
         if face.values:
-            rows.draw_heading("Controls" if isinstance(item, Group) else "Values")
+            rows.draw_heading(translate("Controls") if isinstance(item, Group) else translate("Values"))
         if isinstance(item, Node) and render_path(item):
             self._renders.draw(rows, id, item)
         else:
@@ -75,7 +78,7 @@ class NodeView:
                 if not declaration.folded:
                     self._values.draw(rows, (Port(id, name),), declaration)
         if face.unfolded_inputs:
-            rows.draw_heading("Inputs")
+            rows.draw_heading(translate("Inputs"))
         for name, socket in face.unfolded_inputs.items():
             _input(rows, Port(id, name), socket)
         self._draw_mask(rows, (id,), [declaration for declaration in face.values.values() if declaration.folded])
@@ -85,19 +88,19 @@ class NodeView:
         session = rows.context.session
         items = [session.graph.nodes[id] for id in ids]
         kinds = {title_of(item) for item in items}
-        kind = f"{len(ids)} × {kinds.pop()}" if len(kinds) == 1 else f"{len(ids)} Nodes"  # noqa: RUF001
+        kind = f"{len(ids)} × {kinds.pop()}" if len(kinds) == 1 else translate("{count} Nodes", count=len(ids))  # noqa: RUF001
         draw_heading(
             rows, kind, rows.palette.category(_category(items[0])), lambda: self._draw_shared_buttons(rows, ids), 1
         )
         rows.note(", ".join(ids))
         declarations = common(session.graph, ids)
         if not declarations:
-            rows.note("These nodes have no value in common.")
+            rows.note(translate("These nodes have no value in common."))
             return
         unfolded = [declaration for declaration in declarations if not declaration.folded]
         if unfolded:
-            rows.draw_heading("Values in Common")
-        rows.fit(declaration.label or declaration.name for declaration in unfolded or declarations)
+            rows.draw_heading(translate("Values in Common"))
+        rows.fit(name_value(declaration.label or declaration.name) for declaration in unfolded or declarations)
         for declaration in unfolded:
             self._values.draw(rows, tuple(Port(id, declaration.name) for id in ids), declaration)
         self._draw_mask(rows, ids, [declaration for declaration in declarations if declaration.folded])
@@ -116,7 +119,7 @@ class NodeView:
             for declaration in declarations
             for port in ports[declaration.name]
         )
-        if not rows.fold("Mask", f"mask {' '.join(ids)}", is_open=is_used):
+        if not rows.fold(translate("Mask"), f"mask {' '.join(ids)}", is_open=is_used):
             return
         if len(ids) == 1:
             for name, socket in signature(graph.nodes[ids[0]]).inputs.items():
@@ -130,13 +133,13 @@ class NodeView:
     def _draw_buttons(self, rows: Rows, id: str, item: Item) -> None:
         context = rows.context
         session = context.session
-        if rows.icon(icons.ICON_FA_EYE, f"view {id}", "Show in the viewer"):
+        if rows.icon(icons.ICON_FA_EYE, f"view {id}", translate("Show in the viewer")):
             rows.act(lambda: session.views.show_element(ElementId(id)))
         imgui.same_line()
         self._mute(rows, (id,))
         imgui.same_line()
         has_values = not isinstance(item, Unknown) and bool(signature(item).values)
-        if rows.icon(icons.ICON_FA_ROTATE_LEFT, f"reset {id}", "Reset all values", enabled=has_values):
+        if rows.icon(icons.ICON_FA_ROTATE_LEFT, f"reset {id}", translate("Reset all values"), enabled=has_values):
             rows.act(lambda: session.apply(ResetNode(id)))
 
     def _draw_shared_buttons(self, rows: Rows, ids: tuple[str, ...]) -> None:
@@ -145,7 +148,7 @@ class NodeView:
     def _mute(self, rows: Rows, ids: tuple[str, ...]) -> None:
         session = rows.context.session
         muted = session.graph.muted.issuperset(ids)
-        doc = "Muted: passes its first input through. Click to unmute" if muted else "Mute"
+        doc = translate("Muted: passes its first input through. Click to unmute") if muted else translate("Mute")
         glyph = icons.ICON_FA_EYE_SLASH if muted else icons.ICON_FA_POWER_OFF
         if rows.icon(glyph, f"mute {ids[0]}", doc, lit=muted):
             rows.act(lambda: session.apply(ToggleMute()))
@@ -153,44 +156,53 @@ class NodeView:
     def _code(self, rows: Rows, id: str, code: Code) -> None:
         context = rows.context
         if code.file:
-            rows.name(f"{id} file", "file", doc="The file with the code of this node")
+            rows.name(f"{id} file", translate("file", "value"), doc=translate("The file with the code of this node"))
             file = paths.resolve_path(code.file, context.session.graph.folder)
             draft = " *" if file in context.session.code_files.drafts else ""
             rows.chip(PurePath(code.file).name + draft, f"{id} file", rows.field(), rows.palette.good, code.file)
-        label = f"{icons.ICON_FA_CODE}  Edit Code"
-        if rows.wide_button(label, f"code {id}", f"Show the {LANGUAGES[code.language]} of this node"):
+        label = f"{icons.ICON_FA_CODE}  {translate('Edit Code')}"
+        if rows.wide_button(
+            label, f"code {id}", translate("Show the {language} of this node", language=LANGUAGES[code.language])
+        ):
             rows.act(lambda: context.actions.run("code.edit"))
 
     def _group(self, rows: Rows, id: str, item: Group) -> None:
         context, half = rows.context, (rows.width - rows.gap) / 2
         if item.path:
-            rows.name(f"{id} path", "file", doc="The graph file that this group comes from")
+            rows.name(
+                f"{id} path", translate("file", "value"), doc=translate("The graph file that this group comes from")
+            )
             rows.chip(PurePath(item.path).name, f"{id} path", rows.field(), rows.palette.good, item.path)
-        local = f"{icons.ICON_FA_HOUSE}  Make Local"
+        local = f"{icons.ICON_FA_HOUSE}  {translate('Make Local')}"
         beside = imgui.calc_text_size(local).x + 2 * imgui.get_style().frame_padding.x <= half
         width = half if item.path and beside else rows.width
-        if imgui.button(f"{icons.ICON_FA_RIGHT_TO_BRACKET}  Enter##{id}", (width, 0.0)):
+        if imgui.button(
+            make_label(f"{icons.ICON_FA_RIGHT_TO_BRACKET}  {translate('Enter')}", f"enter {id}"), (width, 0.0)
+        ):
             rows.act(lambda: context.session.enter(id))
-        tip("Show what is in the group")
+        tip(translate("Show what is in the group"))
         context.places[f"button enter {id}"] = item_rect()
         if item.path:
             if beside:
                 imgui.same_line(0.0, rows.gap)
-            if imgui.button(f"{local}##{id}", (width, 0.0)):
+            if imgui.button(make_label(local, f"local {id}"), (width, 0.0)):
                 rows.act(lambda: context.session.apply(MakeGroupLocal(id)))
-            tip("Copy it into this document, so that it can be edited here")
+            tip(translate("Copy it into this document, so that it can be edited here"))
             context.places[f"button local {id}"] = item_rect()
 
 
 def _list_labels(face: Signature) -> list[str]:
     """What the values of a node are called, without those of its mask."""
-    return [value.label or name for name, value in face.values.items() if not value.folded]
+    values = [value for value in face.values.values() if not value.folded]
+    fields = [field for value in values if value.items for kind in value.items.kinds for field in kind.declarations]
+    return [name_value(value.label or value.name) for value in (*values, *fields)]
 
 
 def _input(rows: Rows, port: Port, socket: Socket) -> None:
     """Draw a socket: its link, or what it does without one."""
-    doc = "\n".join(part for part in (socket.doc, f"{socket.kind}, {socket.channels} channels") if part)
-    rows.name(str(port), port.socket, doc=doc, color=rows.palette.kinds[socket.kind])
+    channels = translate_plural("{count} channel", "{count} channels", socket.channels)
+    doc = "\n".join(part for part in (translate(socket.doc), f"{translate(socket.kind, 'kind')}, {channels}") if part)
+    rows.name(str(port), name_value(port.socket), doc=doc, color=rows.palette.kinds[socket.kind])
     source = rows.context.session.graph.links.get(port)
     width = rows.field()
     if source is not None:
@@ -198,10 +210,10 @@ def _input(rows: Rows, port: Port, socket: Socket) -> None:
         return
     imgui.align_text_to_frame_padding()
     if socket.optional:
-        imgui.text_disabled(f"not linked: {_default(socket)}")
+        imgui.text_disabled(translate("not linked: {default}", default=_default(socket)))
     else:
         imgui.push_style_color(imgui.Col_.text, imgui.get_color_u32((*rows.palette.warning, 1.0)))
-        imgui.text("not linked")
+        imgui.text(translate("not linked"))
         imgui.pop_style_color()
     rows.record(str(port))
 

@@ -14,11 +14,13 @@ from ...authoring.commands import (
     SetPreroll,
     SetReferenceHeight,
 )
+from ...language.translation import translate
 from ...resources.picture import MAX_OVERSCAN
 from ..fields.fields import Fields
 from ..fields.number_field import number_field, row_of_numbers
 from ..fields.numbers import RATE, near
 from ..theme.style import ui_scale
+from ..toolkit.labels import translate_label
 from ..toolkit.words import tip
 from .applying import find_height
 from .color_rows import color_rows
@@ -28,6 +30,7 @@ _SIDE = Value("size", "int", 1920, low=1.0, high=4096.0, minimum=1.0, maximum=16
 _PREROLL = Value("preroll", "int", 12, low=0.0, high=100.0, minimum=0.0)
 _OVERSCAN = Value("overscan", "float", 0.0, low=0.0, high=0.5, minimum=0.0, maximum=MAX_OVERSCAN, unit="height")
 _FULL_HD = (1920, 1080)
+_NAMES = ("canvas", "lengths at", "overscan", "frames", "rate", "pre-roll", "color config", "working space")
 
 
 class ProjectRows:
@@ -38,6 +41,7 @@ class ProjectRows:
 
     def draw(self, rows: Rows) -> None:
         """Draw all of them."""
+        rows.fit(translate(name, "value") for name in _NAMES)
         self._size(rows)
         self._reference_height(rows)
         self._overscan(rows)
@@ -51,15 +55,15 @@ class ProjectRows:
         size = session.graph.settings.size
         rows.name(
             "size",
-            "canvas",
-            doc="The size of generated pictures. Automatic: that of the first picture",
+            translate("canvas", "value"),
+            doc=translate("The size of generated pictures. Automatic: that of the first picture"),
         )
         width, side = rows.field(), imgui.get_frame_height()
         if size is None:
-            if imgui.button("Automatic##size", (width, 0.0)):
+            if imgui.button(translate_label("Automatic"), (width, 0.0)):
                 rows.act(lambda: session.apply(SetCanvasSize(_FULL_HD)))
             rows.record("size")
-            tip("The size of the first picture that is read; click to set one")
+            tip(translate("The size of the first picture that is read; click to set one"))
             return
         imgui.begin_group()
         edit = row_of_numbers(
@@ -74,7 +78,7 @@ class ProjectRows:
         imgui.end_group()
         rows.record("size")
         imgui.same_line(0.0, 0.0)
-        if rows.icon(icons.ICON_FA_XMARK, "automatic size", "Automatic: the size of the first picture"):
+        if rows.icon(icons.ICON_FA_XMARK, "automatic size", translate("Automatic: the size of the first picture")):
             rows.act(lambda: session.apply(SetCanvasSize(None)))
         if edit and isinstance(edit.value, tuple):
             wide, high = edit.value
@@ -84,21 +88,27 @@ class ProjectRows:
         """Draw the height at which numbers of lengths are pixels. Switching it on keeps the picture as it is."""
         session = rows.context.session
         reference = session.graph.settings.reference_height
-        doc = "Lengths are pixels of a picture of this height, so that the look is the same at every size."
-        rows.name("reference height", "lengths at", doc=doc, changed=reference is not None)
+        doc = translate("Lengths are pixels of a picture of this height, so that the look is the same at every size.")
+        rows.name("reference height", translate("lengths at", "value"), doc=doc, changed=reference is not None)
         width = rows.field()
         if reference is None:
-            if imgui.button("Pixels of the picture##reference height", (width, 0.0)):
+            if imgui.button(translate_label("Pixels of the picture"), (width, 0.0)):
                 height = find_height(session.graph, rows.context.viewer.picture[1])
                 rows.act(lambda: session.apply(SetReferenceHeight(height)))
             rows.record("reference height")
-            tip("A larger picture has finer grain and thinner lines; click to make the look the same at every size")
+            tip(
+                translate(
+                    "A larger picture has finer grain and thinner lines; click to make the look the same at every size"
+                )
+            )
             return
         width -= imgui.get_frame_height()
-        edit = number_field(self._fields, "reference height", reference, _SIDE, width, suffix="px high", plain=True)
+        edit = number_field(
+            self._fields, "reference height", reference, _SIDE, width, suffix=translate("px high", "unit"), plain=True
+        )
         rows.record("reference height")
         imgui.same_line(0.0, 0.0)
-        if rows.icon(icons.ICON_FA_XMARK, "no reference height", "Pixels of the picture"):
+        if rows.icon(icons.ICON_FA_XMARK, "no reference height", translate("Pixels of the picture")):
             rows.act(lambda: session.apply(SetReferenceHeight(None)))
         if edit and isinstance(edit.value, int | float):
             height, token = int(edit.value), edit.merge
@@ -107,9 +117,13 @@ class ProjectRows:
     def _overscan(self, rows: Rows) -> None:
         session = rows.context.session
         overscan = session.root.settings.overscan
-        doc = "How far beyond its frame a picture is kept, so that what left it can come back; 0: it ends there."
-        rows.name("overscan", "overscan", doc=doc, changed=overscan > 0.0)
-        edit = number_field(self._fields, "overscan", overscan, _OVERSCAN, rows.field(), suffix="height", plain=True)
+        doc = translate(
+            "How far beyond its frame a picture is kept, so that what left it can come back; 0: it ends there."
+        )
+        rows.name("overscan", translate("overscan", "value"), doc=doc, changed=overscan > 0.0)
+        edit = number_field(
+            self._fields, "overscan", overscan, _OVERSCAN, rows.field(), suffix=translate("height", "unit"), plain=True
+        )
         rows.record("overscan")
         if edit and isinstance(edit.value, int | float):
             part, token = float(edit.value), edit.merge
@@ -119,7 +133,12 @@ class ProjectRows:
         """Draw the frame range, the frame rate and the pre-roll."""
         session = rows.context.session
         settings, (first, last) = session.root.settings, session.time.frames
-        rows.name("frames", "frames", doc="The first and the last frame", changed=settings.frames is not None)
+        rows.name(
+            "frames",
+            translate("frames", "value"),
+            doc=translate("The first and the last frame"),
+            changed=settings.frames is not None,
+        )
         stated = settings.frames is not None
         width = rows.field() - (imgui.get_frame_height() if stated else 0.0)
         imgui.begin_group()
@@ -129,13 +148,17 @@ class ProjectRows:
         imgui.end_group()
         rows.record("frames")
         if not stated:
-            tip("Automatic: from the sequences that the graph reads, or from its keys. Type a number to set it")
+            tip(
+                translate(
+                    "Automatic: from the sequences that the graph reads, or from its keys. Type a number to set it"
+                )
+            )
         else:
             imgui.same_line(0.0, 0.0)
             if rows.icon(
                 icons.ICON_FA_XMARK,
                 "automatic frames",
-                "Automatic: from sequences or keys",
+                translate("Automatic: from sequences or keys"),
             ):
                 rows.act(lambda: session.apply(SetFrameRange(None)))
         if edit and isinstance(edit.value, tuple):
@@ -143,8 +166,10 @@ class ProjectRows:
             # The end that moves pushes the other one, so that the range never runs backwards.
             low, high = (low, max(low, high)) if low != first else (min(low, high), high)
             rows.act(lambda: session.apply(SetFrameRange(low, high, merge=edit.merge)))
-        rows.name("rate", "rate", doc="Frames per second", changed=settings.rate != 24.0)
-        rate = number_field(self._fields, "rate", settings.rate, RATE, rows.field(), suffix="fps", plain=True)
+        rows.name("rate", translate("rate", "value"), doc=translate("Frames per second"), changed=settings.rate != 24.0)
+        rate = number_field(
+            self._fields, "rate", settings.rate, RATE, rows.field(), suffix=translate("fps", "unit"), plain=True
+        )
         rows.record("rate")
         if rate and isinstance(rate.value, int | float):
             fps, token = float(rate.value), rate.merge
@@ -154,21 +179,25 @@ class ProjectRows:
     def _preroll(self, rows: Rows) -> None:
         session = rows.context.session
         preroll = session.root.settings.preroll
-        doc = "How many frames before the requested one nodes with a memory start. Without a number they start "
-        doc += "at the first frame, so that a frame is the same wherever a render begins."
-        rows.name("preroll", "pre-roll", doc=doc, changed=preroll is not None)
+        doc = translate(
+            "How many frames before the requested one nodes with a memory start. Without a number they start "
+            "at the first frame, so that a frame is the same wherever a render begins."
+        )
+        rows.name("preroll", translate("pre-roll", "value"), doc=doc, changed=preroll is not None)
         width = rows.field()
         if preroll is None:
-            if imgui.button("First frame##preroll", (width, 0.0)):
+            if imgui.button(translate_label("First frame"), (width, 0.0)):
                 rows.act(lambda: session.apply(SetPreroll(12)))
             rows.record("preroll")
             tip(doc)
             return
         width -= imgui.get_frame_height()
-        edit = number_field(self._fields, "preroll", preroll, _PREROLL, width, suffix="frames", plain=True)
+        edit = number_field(
+            self._fields, "preroll", preroll, _PREROLL, width, suffix=translate("frames", "unit"), plain=True
+        )
         rows.record("preroll")
         imgui.same_line(0.0, 0.0)
-        if rows.icon(icons.ICON_FA_XMARK, "automatic preroll", "From the first frame"):
+        if rows.icon(icons.ICON_FA_XMARK, "automatic preroll", translate("From the first frame")):
             rows.act(lambda: session.apply(SetPreroll(None)))
         if edit and isinstance(edit.value, int | float):
             count, token = int(edit.value), edit.merge

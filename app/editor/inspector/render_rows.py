@@ -11,13 +11,16 @@ from imgui_bundle import imgui
 
 from ...authoring.commands import AddMatte, SetValue
 from ...graph import Port
+from ...language.translation import mark, translate
 from ...render_layers.naming import Role
 from ...render_layers.overview import RenderOverview, RoleUse
 from ...render_layers.recognition import RenderPass
 from ...render_layers.report import join_choices, list_camera
+from ..shared.declared_words import name_value
 from ..shared.render_facts import FOUND, overview_of, render_path, rule_words
 from ..theme.palette import RGB
 from ..toolkit.buttons import dropdown
+from ..toolkit.labels import make_label
 from ..toolkit.places import item_rect, place
 from ..toolkit.words import SMALL, cut_middle, draw_wrapped, font, tip, write
 from .matte_rows import MatteRows
@@ -26,7 +29,7 @@ from .value_rows import ValueRows
 if TYPE_CHECKING:
     from .rows import Rows
 
-_USE_AS = "use as"
+_USE_AS = mark("use as")
 _LONGEST = 200
 """The most letters that are shown of a header entry."""
 
@@ -75,14 +78,16 @@ class RenderRows:
         visible_roles = [value for value in roles if Role(value.role) in there]
         rest = [value for value in roles if Role(value.role) not in there]
         if visible_roles:
-            rows.draw_heading("Layers")
+            rows.draw_heading(translate("Layers"))
         for value in visible_roles:
             self._role(rows, id, item, value, uses.get(Role(value.role)))
         if not rest:
             return
         count = len({value.role for value in rest})
-        title = f"Not in This File ({count})" if uses else f"Layers ({count})"
-        if _draw_fold(rows, f"{title}###rest {id}", f"more {id} layers"):
+        title = (
+            translate("Not in This File ({count})", count=count) if uses else translate("Layers ({count})", count=count)
+        )
+        if _draw_fold(rows, make_label(title, f"rest {id}"), f"more {id} layers"):
             for value in rest:
                 self._role(rows, id, item, value, None)
 
@@ -103,7 +108,11 @@ class RenderRows:
                 rows.field_note(rule_words(use.rule, kind_shown=False))
         elif use.rule:
             chosen = item.setting(value.name) != FOUND
-            words = f"chosen by hand; detected: {use.rule.words}" if chosen else rule_words(use.rule, kind_shown=True)
+            words = (
+                translate("chosen by hand; detected: {words}", words=use.rule.words)
+                if chosen
+                else rule_words(use.rule, kind_shown=True)
+            )
             unsure = not use.rule.kind and not chosen
             rows.field_note(words, rows.palette.warning if unsure else None)
 
@@ -113,13 +122,13 @@ class RenderRows:
             self._offer_mattes(rows, id, overview)
         if not overview.other_passes:
             return
-        rows.draw_heading("Not Used")
+        rows.draw_heading(translate("Not Used"))
         for item in overview.other_passes:
             self._other(rows, id, [value for value in roles if value.type == "text"], item)
 
     def _other(self, rows: Rows, id: str, roles: Sequence[Value], item: RenderPass) -> None:
         key, session = f"{id} {item.layer.name}", rows.context.session
-        button = f"{_USE_AS}  {icons.ICON_FA_CHEVRON_DOWN}"
+        button = f"{translate(_USE_AS)}  {icons.ICON_FA_CHEVRON_DOWN}"
         room = imgui.calc_text_size(button).x + 2 * imgui.get_style().frame_padding.x
         rect = place(rows.width - room - rows.gap)
         imgui.dummy((rect[2] - rect[0], rect[3] - rect[1]))
@@ -130,14 +139,14 @@ class RenderRows:
         def offer() -> None:
             likely = [value for value in roles if value.role in item.candidates or value.role == item.role]
             for value in (*likely, *(value for value in roles if value not in likely)):
-                if imgui.menu_item(f"{_label(value)}###{value.name}", "", value in likely)[0]:
+                if imgui.menu_item(make_label(name_value(_label(value)), value.name), "", value in likely)[0]:
                     rows.act(lambda value=value: session.apply(SetValue(Port(id, value.name), item.layer.name)))
                 rows.context.places[f"menu {_label(value)}"] = item_rect()
 
-        dropdown(rows.context, button, f"button use {key}", "Choose what this layer is used for", offer)
+        dropdown(rows.context, button, f"button use {key}", translate("Choose what this layer is used for"), offer)
         maybe = item.role is None and bool(item.candidates)
         words = (
-            f"may be {join_choices([role.words for role in item.candidates])}"
+            translate("may be {roles}", roles=join_choices([role.words for role in item.candidates]))
             if maybe
             else (item.role.words if item.role else item.reason)
         )
@@ -146,21 +155,27 @@ class RenderRows:
 
     def _offer_mattes(self, rows: Rows, id: str, overview: RenderOverview) -> None:
         """Draw the cryptomattes of the file, and a button that adds a cryptomatte node."""
-        rows.draw_heading("Cryptomatte")
+        rows.draw_heading(translate("Cryptomatte"))
         words = [
-            f"{matte.kind or 'unnamed'}: {len(matte.ids)} names" if matte.ids else f"{matte.kind}: no manifest"
+            translate("{kind}: {count} names", kind=matte.kind or translate("unnamed"), count=len(matte.ids))
+            if matte.ids
+            else translate("{kind}: no manifest", kind=matte.kind)
             for matte in overview.mattes
         ]
         rows.note(", ".join(words))
         session = rows.context.session
-        if rows.wide_button(f"{icons.ICON_FA_OBJECT_GROUP}  Pick Objects", f"matte {id}", "Add a cryptomatte node"):
+        if rows.wide_button(
+            f"{icons.ICON_FA_OBJECT_GROUP}  {translate('Pick Objects')}",
+            f"matte {id}",
+            translate("Add a cryptomatte node"),
+        ):
             rows.act(lambda: session.apply(AddMatte(id, overview.mattes[0].kind)))
 
 
 def _about(rows: Rows, overview: RenderOverview | str | None) -> None:
     """Draw a summary of the file below its path."""
     if overview is None:
-        rows.field_note("reading the file…")
+        rows.field_note(translate("reading the file…"))
     elif isinstance(overview, RenderOverview):
         rows.field_note(f"{overview.size}\n{overview.maker}")
         if overview.fault:
@@ -169,7 +184,7 @@ def _about(rows: Rows, overview: RenderOverview | str | None) -> None:
 
 def _camera(rows: Rows, id: str, overview: RenderOverview) -> None:
     """Draw whether the file has a camera, and how exact it is."""
-    rows.draw_heading("Camera")
+    rows.draw_heading(translate("Camera"))
     facts = dict(list_camera(overview.camera))
     for name in ("found", "none", "residual", "field of view"):
         if name in facts:
@@ -179,8 +194,10 @@ def _camera(rows: Rows, id: str, overview: RenderOverview) -> None:
 
 def _file(rows: Rows, id: str, overview: RenderOverview) -> None:
     """Draw what `halation info` shows besides: parts, the whole camera, metadata."""
-    rows.draw_heading("File")
-    if _draw_fold(rows, f"Parts ({len(overview.parts)})###parts {id}", f"more {id} parts"):
+    rows.draw_heading(translate("File"))
+    if _draw_fold(
+        rows, make_label(translate("Parts ({count})", count=len(overview.parts)), f"parts {id}"), f"more {id} parts"
+    ):
         names = [part[1] or f"part {part[0]}" for part in overview.parts]
         heads = {name.partition(".")[0] for name in names}
         shared = heads.pop() if len(heads) == 1 and len(names) > 1 else ""
@@ -191,17 +208,21 @@ def _file(rows: Rows, id: str, overview: RenderOverview) -> None:
                 for name, part in zip(names, overview.parts, strict=True)
             ],
         )
-    if overview.camera.camera and _draw_fold(rows, f"Camera###camera {id}", f"more {id} camera"):
+    if overview.camera.camera and _draw_fold(
+        rows, make_label(translate("Camera"), f"camera {id}"), f"more {id} camera"
+    ):
         _facts(rows, list_camera(overview.camera))
     if overview.metadata and _draw_fold(
-        rows, f"Metadata ({len(overview.metadata)})###metadata {id}", f"more {id} metadata"
+        rows,
+        make_label(translate("Metadata ({count})", count=len(overview.metadata)), f"metadata {id}"),
+        f"more {id} metadata",
     ):
         _facts(
             rows,
             [(name, words if len(words) <= _LONGEST else f"{words[:_LONGEST]}…") for name, words in overview.metadata],
         )
     if overview.report and rows.wide_button(
-        f"{icons.ICON_FA_COPY}  Copy Report", f"report {id}", "Copy all of it as text"
+        f"{icons.ICON_FA_COPY}  {translate('Copy Report')}", f"report {id}", translate("Copy all of it as text")
     ):
         rows.context.clipboard.put(overview.report)
 

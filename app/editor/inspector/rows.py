@@ -10,6 +10,7 @@ from imgui_bundle import imgui
 from ..theme.palette import RGB
 from ..theme.style import mix, u32, ui_scale, vec4
 from ..toolkit.buttons import quiet_button
+from ..toolkit.labels import make_label
 from ..toolkit.places import item_rect, place
 from ..toolkit.words import SMALL, draw_wrapped, font, tip, write
 
@@ -52,7 +53,7 @@ class Rows:
         scale = ui_scale()
         longest = max((imgui.calc_text_size(label.replace("_", " ")).x for label in labels), default=42.0 * scale)
         needed_width = max(self.width * least, longest + (9.0 + DIAMOND_WIDTH) * scale + 1.0)
-        self.name_width = min(needed_width, self.width * 0.48, 170.0 * scale)
+        self.name_width = min(needed_width, self.width * 0.48, 210.0 * scale)
         self.field_width = max(self.width - self.name_width - self.gap, 1.0)
 
     def name(
@@ -119,7 +120,7 @@ class Rows:
         flags |= int(imgui.TreeNodeFlags_.default_open) if is_open else 0
         imgui.push_style_color(imgui.Col_.text, vec4(mix(self.palette.dim, self.palette.text, 0.35)))
         with font(self.context, "bold", SMALL):
-            opened = imgui.tree_node_ex(f"{text}##{key} {is_open}", flags)
+            opened = imgui.tree_node_ex(make_label(text, f"{key} {is_open}"), flags)
         imgui.pop_style_color()
         self.context.places[f"fold {key}"] = item_rect()
         return opened
@@ -152,7 +153,7 @@ class Rows:
 
     def wide_button(self, label: str, key: str, doc: str = "") -> bool:
         """Draw a button over the whole width; True if it was clicked."""
-        pressed = imgui.button(f"{label}##{key}", (self.width, 0.0))
+        pressed = imgui.button(make_label(label, key), (self.width, 0.0))
         self.context.places[f"button {key}"] = item_rect()
         tip(doc)
         return pressed

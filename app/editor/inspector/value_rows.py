@@ -16,14 +16,17 @@ from ...authoring.edits.element_id import ElementId
 from ...authoring.edits.values import can_animate, find_control
 from ...graph import INPUTS, Graph, Port, find_declaration, signature
 from ...graph.named_items import split_path
+from ...language.translation import mark, translate
 from ..fields.choice_field import choose
 from ..fields.fields import Edit, Fields
 from ..fields.item_facts import find_unit
 from ..fields.numbers import describe_default, describe_value
 from ..fields.value_field import value_field
+from ..shared.declared_words import name_value
 from ..shared.render_facts import convention_words, first_words, use_of
 from ..theme.palette import RGB
 from ..theme.style import ui_scale
+from ..toolkit.labels import make_label
 from ..toolkit.places import item_rect
 from .applying import (
     Ports,
@@ -77,7 +80,7 @@ class ValueRows:
         control = find_control(session.graph, port) if len(ports) == 1 else None
         rows.name(
             key,
-            label or declaration.label or declaration.name,
+            label or name_value(declaration.label or declaration.name),
             doc=_tip(declaration, control),
             changed=changed,
             color=color,
@@ -130,9 +133,9 @@ class ValueRows:
     ) -> bool:
         """Draw the field of a value with its marks; True if the user opens the menu."""
         port, key = ports[0], str(ports[0])
-        mark = imgui.get_frame_height() * ((control is not None) + declaration.handle)
+        marks = imgui.get_frame_height() * ((control is not None) + declaration.handle)
         mixed = any(value_now(rows.context.session, other_port)[0] != value for other_port in ports[1:])
-        edit = self._field(rows, ports, declaration, value, width - mark, mixed)
+        edit = self._field(rows, ports, declaration, value, width - marks, mixed)
         rows.record(key)
         released = imgui.is_item_hovered() and imgui.is_mouse_released(imgui.MouseButton_.right)
         if moves:
@@ -143,7 +146,7 @@ class ValueRows:
             _crosshair(rows, key)
         if control:
             self._mark(rows, port, control)
-        return released and declaration.type not in ("curve", "ramp", "spline", "items")
+        return released and declaration.type not in ("curve", "ramp", "spline", "stroke", "items")
 
     def _draw_notes(self, rows: Rows, ports: Ports, declaration: Value, value: Plain) -> None:
         """Draw what belongs below a field: the file of a path, a color space, the selected light."""
@@ -228,7 +231,7 @@ class ValueRows:
         if items and count == 1:
             items.draw_list(width)
         else:
-            rows.note("Select one node to edit this list.")
+            rows.note(translate("Select one node to edit this list."))
         imgui.end_group()
 
     def _find_unit(self, graph: Graph, port: Port) -> str | None:
@@ -265,7 +268,11 @@ class ValueRows:
     def _mark(self, rows: Rows, port: Port, control: str) -> None:
         """Draw the mark of a control; a click renames the control."""
         imgui.same_line(0.0, 0.0)
-        if rows.icon(icons.ICON_FA_SLIDERS, f"control {port}", f"Shown as the control '{control}'; click to rename"):
+        if rows.icon(
+            icons.ICON_FA_SLIDERS,
+            f"control {port}",
+            translate("Shown as the control '{control}'; click to rename", control=control),
+        ):
             self._renaming = control
             imgui.open_popup(f"rename {port}")
         if imgui.begin_popup(f"rename {port}"):
@@ -287,38 +294,48 @@ class ValueRows:
         context, port = rows.context, ports[0]
         session = context.session
 
-        def entry(icon: str, label: str, enabled: bool, act: Callable[[], object]) -> None:
-            if imgui.menu_item(f"{icon}  {label}", "", False, enabled)[0]:
+        def entry(icon: str, label: str, enabled: bool, act: Callable[[], object], **places: str) -> None:
+            id = label.format(**places)
+            if imgui.menu_item(make_label(f"{icon}  {translate(label, **places)}", id), "", False, enabled)[0]:
                 rows.act(act)
-            context.places[f"menu {label}"] = item_rect()
+            context.places[f"menu {id}"] = item_rect()
 
-        entry(icons.ICON_FA_ROTATE_LEFT, "Reset", True, lambda: reset(session, ports))
-        entry(icons.ICON_FA_COPY, "Copy Value", True, lambda: context.clipboard.put(as_text(declaration, value)))
+        entry(icons.ICON_FA_ROTATE_LEFT, mark("Reset"), True, lambda: reset(session, ports))
+        entry(icons.ICON_FA_COPY, mark("Copy Value"), True, lambda: context.clipboard.put(as_text(declaration, value)))
         entry(
             icons.ICON_FA_PASTE,
-            "Paste Value",
+            mark("Paste Value"),
             source is None,
             lambda: apply(session, ports, declaration, Edit(from_text(context.clipboard.get()))),
         )
         imgui.separator()
         if control is None:
-            entry(icons.ICON_FA_SLIDERS, "Expose as Control", len(ports) == 1, lambda: session.apply(ExposeValue(port)))
+            entry(
+                icons.ICON_FA_SLIDERS,
+                mark("Expose as Control"),
+                len(ports) == 1,
+                lambda: session.apply(ExposeValue(port)),
+            )
         else:
-            entry(icons.ICON_FA_EYE_SLASH, "Hide Control", True, lambda: session.apply(HideControl(control)))
+            entry(icons.ICON_FA_EYE_SLASH, mark("Hide Control"), True, lambda: session.apply(HideControl(control)))
         units = list_other_units(session.graph, port, declaration) if source is None else ()
         if units:
             imgui.separator()
         height = find_height(session.graph, context.viewer.picture[1])
         for unit in units:
             entry(
-                icons.ICON_FA_RULER, f"Unit: {unit}", True, partial(session.apply, ConvertLength(ports, unit, height))
+                icons.ICON_FA_RULER,
+                mark("Unit: {unit}"),
+                True,
+                partial(session.apply, ConvertLength(ports, unit, height)),
+                unit=unit,
             )
         if source is None and can_animate(session.graph, port):
             self._keying.menu(rows, ports, as_text(declaration, value))
         if source is not None:
             imgui.separator()
-            entry(icons.ICON_FA_ARROW_LEFT, "Go to Source", True, lambda: go_to(context, source))
-            entry(icons.ICON_FA_LINK_SLASH, "Unlink", True, lambda: session.apply(Disconnect(port)))
+            entry(icons.ICON_FA_ARROW_LEFT, mark("Go to Source"), True, lambda: go_to(context, source))
+            entry(icons.ICON_FA_LINK_SLASH, mark("Unlink"), True, lambda: session.apply(Disconnect(port)))
 
 
 def _crosshair(rows: Rows, key: str) -> None:
@@ -326,7 +343,9 @@ def _crosshair(rows: Rows, key: str) -> None:
     viewer = rows.context.viewer
     imgui.same_line(0.0, 0.0)
     lit = viewer.picking == key
-    if rows.icon(icons.ICON_FA_CROSSHAIRS, f"place {key}", "Click on the picture to place it there", lit=lit):
+    if rows.icon(
+        icons.ICON_FA_CROSSHAIRS, f"place {key}", translate("Click on the picture to place it there"), lit=lit
+    ):
         viewer.picking = "" if lit else key
 
 
@@ -336,11 +355,17 @@ def link_chip(rows: Rows, target: Port, source: Port, width: float) -> None:
     start = context.session.graph.source(source)
     color = rows.palette.kinds[start.kind] if start else rows.palette.dim
     text = f"{icons.ICON_FA_ARROW_LEFT}  {source.socket if source.node == INPUTS else source}"
-    if rows.chip(text, str(target), max(width - side, 1.0), color, f"Linked from {source}: click to go there"):
+    if rows.chip(
+        text,
+        str(target),
+        max(width - side, 1.0),
+        color,
+        translate("Linked from {source}: click to go there", source=source),
+    ):
         rows.act(lambda: go_to(context, source))
     first = item_rect()
     imgui.same_line(0.0, 0.0)
-    if rows.icon(icons.ICON_FA_XMARK, f"unlink {target}", "Unlink"):
+    if rows.icon(icons.ICON_FA_XMARK, f"unlink {target}", translate("Unlink")):
         rows.act(lambda: context.session.apply(Disconnect(target)))
     last = item_rect()
     context.places[f"field {target}"] = (first[0], first[1], last[2], last[3])
@@ -369,5 +394,7 @@ def _layer_of(graph: Graph, port: Port, declaration: Value) -> str:
 
 def _tip(declaration: Value, control: str | None) -> str:
     lines = describe_value(declaration, describe_default(declaration))
-    hints = "Double click: reset. Right click: more."
-    return "\n".join(part for part in (lines, f"Control: {control}" if control else "", hints) if part)
+    hints = translate("Double click: reset. Right click: more.")
+    return "\n".join(
+        part for part in (lines, translate("Control: {control}", control=control) if control else "", hints) if part
+    )

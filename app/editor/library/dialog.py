@@ -15,12 +15,14 @@ from ...authoring.library import find_preset_file, list_folders, make_preset_nam
 from ...authoring.preset_versions import keep_version
 from ...document.about import About, find_about
 from ...errors import UsageError
+from ...language.translation import mark, translate
 from ...resources.sandbox import UNRESTRICTED
 from ..shared.dialogs import Question
 from ..theme.style import ui_scale
-from ..toolkit.buttons import main_button
+from ..toolkit.buttons import main_button, measure_buttons
 from ..toolkit.dialogs import backdrop, dialog, escape_pressed
-from ..toolkit.fields import combo, label
+from ..toolkit.fields import combo, label, measure_labels
+from ..toolkit.labels import translate_label
 from ..toolkit.places import record
 from ..toolkit.textures import Textures, fit_picture
 from ..toolkit.words import draw_dim, draw_wrapped, font
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
     from .context import PresetContext
 
 _LABELS = 104.0
+_TITLES = ("Save", "Name", "Tags", "Description", "Folder")
 _PICTURE = 200.0, 112.0
 _DOC_LINES = 3
 _ENTERED = int(imgui.InputTextFlags_.enter_returns_true)
@@ -46,6 +49,11 @@ class _PresetForm:
     of_selection: bool = False
     snapshots: list[Array] = field(default_factory=list["Array"])
     """The picture of the viewer, once the viewer has drawn it."""
+
+
+def _label_width() -> float:
+    """The width of the column of names, in units."""
+    return measure_labels(map(translate, _TITLES), _LABELS)
 
 
 class PresetDialog:
@@ -72,7 +80,7 @@ class PresetDialog:
         close = backdrop(self._context, "preset") and not covered
         with dialog(self._context, "Save as preset", (640, 0), top=0.4):
             with font(self._context, "bold", 18.0):
-                imgui.text_unformatted("Save as preset")
+                imgui.text_unformatted(translate("Save as preset"))
             imgui.dummy(ImVec2(0, 2 * ui_scale()))
             self._draw_picture(form)
             imgui.same_line(0, 16 * ui_scale())
@@ -120,34 +128,34 @@ class PresetDialog:
             imgui.image(self._textures.get("snapshot", lambda: np.asarray(pixels)), ImVec2(across, down))
         else:
             with font(self._context, "text", 13.0):
-                draw_dim(self._context, "The viewer shows nothing:\nthere will be no picture.")
+                draw_dim(self._context, translate("The viewer shows nothing:\nthere will be no picture."))
         imgui.set_cursor_pos(corner)
         imgui.dummy(size)
 
     def _draw_fields(self, form: _PresetForm, is_new: bool) -> bool:
         """Draw the fields; True if Enter was pressed in one."""
         if any(element in self._context.session.graph.nodes for element in self._context.session.selection):
-            label("Save", _LABELS)
-            for text, of_selection in (("Selection", True), ("Whole graph", False)):
-                if imgui.radio_button(text, form.of_selection is of_selection):
+            label(translate("Save"), _label_width())
+            for text, of_selection in ((mark("Selection"), True), (mark("Whole graph"), False)):
+                if imgui.radio_button(translate_label(text), form.of_selection is of_selection):
                     form.of_selection = of_selection
                 record(self._context, f"preset {text}")
                 imgui.same_line()
             imgui.new_line()
-        label("Name", _LABELS)
+        label(translate("Name"), _label_width())
         if is_new:
             imgui.set_keyboard_focus_here()
-        named, form.name = self._draw_text("name", form.name, "such as: warm glow")
-        label("Tags", _LABELS)
-        tagged, form.tags = self._draw_text("tags", form.tags, "glow, night, look")
-        label("Description", _LABELS)
+        named, form.name = self._draw_text("name", form.name, translate("such as: warm glow"))
+        label(translate("Tags"), _label_width())
+        tagged, form.tags = self._draw_text("tags", form.tags, translate("glow, night, look"))
+        label(translate("Description"), _label_width())
         height = imgui.get_text_line_height() * _DOC_LINES + 2 * imgui.get_style().frame_padding.y
         flags = _ENTERED | int(imgui.InputTextFlags_.ctrl_enter_for_new_line)
         described, form.doc = imgui.input_text_multiline("##preset doc", form.doc, ImVec2(-1, height), flags)
         record(self._context, "preset doc")
         folders = [str(folder) for folder in list_folders(self._context.store.current.preset_folders)]
         if len(folders) > 1:
-            label("Folder", _LABELS)
+            label(translate("Folder"), _label_width())
             form.folder = combo(self._context, "preset folder", form.folder, folders) or form.folder
         return named or tagged or described
 
@@ -175,13 +183,13 @@ class PresetDialog:
             self._context.palette.error if fault and typed else self._context.palette.dim,
             f"{fault[:1].upper()}{fault[1:]}." if fault else path,
         )
-        width = 96 * ui_scale()
+        width = measure_buttons(translate("Cancel"), translate("Save"))
         room = imgui.get_content_region_avail().x - 2 * width - imgui.get_style().item_spacing.x
         imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + room)
-        cancelled = imgui.button("Cancel", ImVec2(width, 0))
+        cancelled = imgui.button(translate_label("Cancel"), ImVec2(width, 0))
         record(self._context, "preset cancel")
         imgui.same_line()
-        return main_button(self._context, "Save", "preset save", width=width, enabled=not fault), cancelled
+        return main_button(self._context, translate("Save"), "preset save", width=width, enabled=not fault), cancelled
 
     # --- saving ------------------------------------------------------------------------------------------------------
 
@@ -192,13 +200,17 @@ class PresetDialog:
             self._save(form, path)
             return
         self._context.dialogs.question = Question(
-            "Replace the preset",
-            f"There is a preset {path.stem} in {path.parent} already. A new version keeps the one that is there: the "
-            "start screen lists the versions of a preset on a right click.",
+            translate("Replace the preset"),
+            translate(
+                "There is a preset {stem} in {parent} already. A new version keeps the one that is "
+                "there: the start screen lists the versions of a preset on a right click.",
+                stem=path.stem,
+                parent=path.parent,
+            ),
             (
-                ("Save a new version", partial(self._save_version, form, path)),
-                ("Replace it", partial(self._save, form, path)),
-                ("Cancel", lambda: None),
+                (translate("Save a new version"), partial(self._save_version, form, path)),
+                (translate("Replace it"), partial(self._save, form, path)),
+                (translate("Cancel"), lambda: None),
             ),
         )
 
@@ -213,5 +225,5 @@ class PresetDialog:
         about = About(" ".join(form.doc.split()), split_tags(form.tags))
         pixels = form.snapshots[0] if form.snapshots else None
         save_preset(graph, about, path, pixels, sandbox=UNRESTRICTED)
-        self._context.log.add(f"saved the preset {path.stem}")
+        self._context.log.add(translate("saved the preset {stem}", stem=path.stem))
         self._end()

@@ -9,15 +9,21 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...authoring.log import Level, LogEntry
+from ...language.translation import mark, translate
 from ..theme.style import ui_scale, vec4
 from ..toolkit.buttons import align_right, quiet_button
+from ..toolkit.labels import make_label, translate_label
 from ..toolkit.places import record
 from ..toolkit.words import ICONS, draw_dim, draw_empty_panel, draw_wrapped, font, level_color
 
 if TYPE_CHECKING:
     from .context import LogContext
 
-_LEVELS: tuple[tuple[Level, str], ...] = (("info", "All"), ("warning", "Warnings"), ("error", "Errors"))
+_LEVELS: tuple[tuple[Level, str], ...] = (
+    ("info", mark("All")),
+    ("warning", mark("Warnings")),
+    ("error", mark("Errors")),
+)
 _ORDER: tuple[Level, ...] = ("info", "warning", "error")
 
 
@@ -35,9 +41,13 @@ class LogPanel:
         ]
         self._draw_toolbar(entries)
         if not entries:
-            kind = {"info": "messages", "warning": "warnings or errors", "error": "errors"}[self._least]
-            sentence = "Messages stay here until they are cleared."
-            draw_empty_panel(self._context, icons.ICON_FA_FILE_LINES, f"No {kind} yet", sentence)
+            title = {
+                "info": translate("No messages yet"),
+                "warning": translate("No warnings or errors yet"),
+                "error": translate("No errors yet"),
+            }[self._least]
+            sentence = translate("Messages stay here until they are cleared.")
+            draw_empty_panel(self._context, icons.ICON_FA_FILE_LINES, title, sentence)
             return
         if imgui.begin_child("entries"):
             at_end = imgui.get_scroll_y() >= imgui.get_scroll_max_y() - 1
@@ -55,17 +65,21 @@ class LogPanel:
             chosen = level == self._least
             imgui.push_style_color(imgui.Col_.button, vec4(palette.raised, 1.0 if chosen else 0.0))
             imgui.push_style_color(imgui.Col_.text, vec4(palette.text if chosen else palette.dim))
-            if imgui.button(label):
+            if imgui.button(translate_label(label)):
                 self._least = level
             imgui.pop_style_color(2)
             record(self._context, f"log {level}")
             imgui.same_line(0, 2 * ui_scale())
         align_right(icons.ICON_FA_COPY, icons.ICON_FA_TRASH)
-        if quiet_button(self._context, icons.ICON_FA_COPY, "copy log", "Copy listed messages", enabled=bool(entries)):
+        if quiet_button(
+            self._context, icons.ICON_FA_COPY, "copy log", translate("Copy listed messages"), enabled=bool(entries)
+        ):
             self._context.clipboard.put("\n".join(_text(entry) for entry in entries))
         imgui.same_line()
         has_entries = bool(self._context.log.entries)
-        if quiet_button(self._context, icons.ICON_FA_TRASH, "clear log", "Clear all messages", enabled=has_entries):
+        if quiet_button(
+            self._context, icons.ICON_FA_TRASH, "clear log", translate("Clear all messages"), enabled=has_entries
+        ):
             self._context.log.entries.clear()
 
 
@@ -80,10 +94,10 @@ def _draw_row(context: LogContext, index: int, entry: LogEntry) -> None:
     draw_wrapped(context.palette.text, entry.sentence)
     record(context, f"log entry {index}")
     if imgui.begin_popup_context_item("menu"):
-        if imgui.menu_item(f"{icons.ICON_FA_COPY} Copy", "", False)[0]:
+        if imgui.menu_item(make_label(f"{icons.ICON_FA_COPY}  {translate('Copy')}", "copy"), "", False)[0]:
             context.clipboard.put(_text(entry))
         imgui.end_popup()
-    if entry.detail and imgui.tree_node("Details for a bug report"):
+    if entry.detail and imgui.tree_node(translate_label("Details for a bug report")):
         with font(context, "mono", 13.0):
             draw_wrapped(context.palette.dim, entry.detail.rstrip())
         imgui.tree_pop()

@@ -8,6 +8,7 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...authoring.edits.element_id import ElementId
+from ...language.translation import translate
 from ..theme.style import u32, ui_scale, vec4
 from ..toolkit.buttons import outline
 from ..toolkit.places import record
@@ -43,8 +44,8 @@ class PassesPanel:
             self._revision = pictures.revision
             self._textures.clear()
         if not pictures.passes:
-            sentence = pictures.fault or "Passes of what the viewer shows appear here."
-            draw_empty_panel(self._context, icons.ICON_FA_LAYER_GROUP, "No passes", sentence)
+            sentence = pictures.fault or translate("Passes of what the viewer shows appear here.")
+            draw_empty_panel(self._context, icons.ICON_FA_LAYER_GROUP, translate("No passes"), sentence)
             return
         room, gap = imgui.get_content_region_avail().x, imgui.get_style().item_spacing.x
         columns = max(int((room + gap) // (_CARD * ui_scale() + gap)), 1)
@@ -99,8 +100,10 @@ class PassesPanel:
             title = ", ".join(entry.functions or entry.nodes)
             imgui.text_colored(vec4(palette.text), f"{entry.number}  {title}" if entry.number else title)
         with font(self._context, "text", SMALL):
-            draw_wrapped(palette.text, f"reads {', '.join(entry.reads) or 'nothing'}")
-            draw_wrapped(palette.dim, f"makes {entry.makes}" if entry.number else entry.makes)
+            draw_wrapped(
+                palette.text, translate("reads {sources}", sources=", ".join(entry.reads) or translate("nothing"))
+            )
+            draw_wrapped(palette.dim, translate("makes {makes}", makes=entry.makes) if entry.number else entry.makes)
             if time := self._find_time(entry):
                 imgui.text_colored(vec4(palette.dim), time)
         imgui.end_child()
@@ -113,12 +116,12 @@ class PassesPanel:
         """All that is known of a pass."""
         span = entry.picture.span
         parts = (
-            f"Pass {entry.number}" if entry.number else "Read from outside",
+            translate("Pass {number}", number=entry.number) if entry.number else translate("Read from outside"),
             ", ".join(entry.nodes),
             ", ".join(entry.functions),
-            f"Reads {', '.join(entry.reads)}" if entry.reads else "",
-            f"Makes {entry.makes}",
-            f"{span[0]:.4g} is black, {span[1]:.4g} is white" if span else "",
+            translate("Reads {sources}", sources=", ".join(entry.reads)) if entry.reads else "",
+            translate("Makes {makes}", makes=entry.makes),
+            translate("{low:.4g} is black, {high:.4g} is white", low=span[0], high=span[1]) if span else "",
             self._find_time(entry),
         )
         return "\n".join(filter(None, parts))

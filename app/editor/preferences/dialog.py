@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -14,11 +14,13 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from ...authoring.background.shader_files import CUSTOMARY
 from ...authoring.preferences import MAX_SCALE, MIN_SCALE, Preferences
 from ...authoring.recovery.recovery import LONGEST
+from ...language.translation import LANGUAGES, mark, translate
 from ...resources.user_folders import PRESETS_VARIABLE, own_presets_folder
 from ..theme.style import ui_scale, vec4
 from ..toolkit.buttons import close_button, quiet_button
 from ..toolkit.dialogs import backdrop, dialog, escape_pressed
-from ..toolkit.fields import combo, label
+from ..toolkit.fields import combo, label, measure_labels
+from ..toolkit.labels import make_label, translate_label
 from ..toolkit.places import record
 from ..toolkit.words import draw_dim, draw_wrapped, font
 from .shortcut_editor import ShortcutEditor
@@ -26,11 +28,14 @@ from .shortcut_editor import ShortcutEditor
 if TYPE_CHECKING:
     from .context import PreferencesContext
 
-_THEMES: Mapping[str, str] = MappingProxyType({"dark": "Dark", "light": "Light", "contrast": "High contrast"})
+_THEMES: Mapping[str, str] = MappingProxyType(
+    {"dark": mark("Dark"), "light": mark("Light"), "contrast": mark("High contrast")}
+)
 _SCALES = (0.0, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0)
 _FLAT = imgui.ChildFlags_.nav_flattened.value
 _LABELS = 120.0
-_PAGES = ("Interface", "Shortcuts", "System")
+_TITLES = ("Theme", "Scale", "Language", "Autosave every", "For pictures")
+_PAGES = (mark("Interface"), mark("Shortcuts"), mark("System"))
 
 
 class PreferencesDialog:
@@ -64,12 +69,15 @@ class PreferencesDialog:
             self._context.dialogs.open.discard("preferences")
 
     def _draw_pages(self, height: float) -> None:
-        imgui.begin_child("pages", ImVec2(130 * ui_scale(), height), _FLAT)
+        title = translate("Preferences")
         with font(self._context, "bold", 18.0):
-            imgui.text_unformatted("Preferences")
+            width = max(imgui.calc_text_size(title).x, 130 * ui_scale())
+        imgui.begin_child("pages", ImVec2(width, height), _FLAT)
+        with font(self._context, "bold", 18.0):
+            imgui.text_unformatted(title)
         imgui.dummy(ImVec2(0, 6 * ui_scale()))
         for page in _PAGES:
-            if imgui.selectable(page, page == self._page)[0]:
+            if imgui.selectable(translate_label(page), page == self._page)[0]:
                 self._page = page
                 self._shortcuts.stop()
             record(self._context, f"page {page}")
@@ -77,63 +85,87 @@ class PreferencesDialog:
 
     def _draw_interface(self) -> None:
         preferences = self._context.store.current
-        _draw_heading(self._context, "Appearance")
-        label("Theme", _LABELS)
+        _draw_heading(self._context, translate("Appearance"))
+        label(translate("Theme"), _label_width())
         for theme, title in _THEMES.items():
-            if imgui.radio_button(title, preferences.theme == theme):
+            if imgui.radio_button(translate_label(title), preferences.theme == theme):
                 _change(self._context, theme=theme)
             record(self._context, f"theme {theme}")
             imgui.same_line()
         imgui.new_line()
-        label("Scale", _LABELS)
+        label(translate("Scale"), _label_width())
         names = {_scale(scale): scale for scale in _SCALES}
-        if chosen := combo(self._context, "ui scale", _scale(preferences.ui_scale), tuple(names), 160 * ui_scale()):
+        if chosen := combo(
+            self._context, "ui scale", _scale(preferences.ui_scale), tuple(names), _measure_choices(names)
+        ):
             _change(self._context, ui_scale=names[chosen])
         if preferences.ui_scale not in _SCALES or not MIN_SCALE <= (preferences.ui_scale or 1.0) <= MAX_SCALE:
             imgui.same_line()
-            draw_dim(self._context, "own")
-        _draw_switch(self._context, "reduced_motion", "Less motion: nothing blinks or fades")
-        _draw_switch(self._context, "separate_windows", "Panels outside of the window (from the next start)")
-        _draw_heading(self._context, "Graph")
-        _draw_switch(self._context, "thumbnails", "Thumbnails on nodes")
-        _draw_switch(self._context, "timings", "Time and memory of each node")
-        _draw_switch(self._context, "minimap", "Overview in the corner")
-        _draw_heading(self._context, "Viewer")
-        _draw_switch(self._context, "proxy_while_dragging", "Lower resolution while a value is dragged")
+            draw_dim(self._context, translate("own", "scale"))
+        label(translate("Language"), _label_width())
+        languages = {"": translate("Same as the system"), **LANGUAGES}
+        if chosen := combo(
+            self._context,
+            "language",
+            languages[preferences.language],
+            tuple(languages.values()),
+            _measure_choices(languages.values()),
+        ):
+            _change(self._context, language=next(code for code, name in languages.items() if name == chosen))
+        _draw_switch(self._context, "reduced_motion", translate("Less motion: nothing blinks or fades"))
+        _draw_switch(self._context, "separate_windows", translate("Panels outside of the window (from the next start)"))
+        _draw_heading(self._context, translate("Graph"))
+        _draw_switch(self._context, "thumbnails", translate("Thumbnails on nodes"))
+        _draw_switch(self._context, "timings", translate("Time and memory of each node"))
+        _draw_switch(self._context, "minimap", translate("Overview in the corner"))
+        _draw_heading(self._context, translate("Viewer"))
+        _draw_switch(self._context, "proxy_while_dragging", translate("Lower resolution while a value is dragged"))
 
     def _draw_system(self) -> None:
-        _draw_heading(self._context, "Recovery")
-        label("Autosave every", _LABELS)
+        _draw_heading(self._context, translate("Recovery"))
+        label(translate("Autosave every"), _label_width())
         self._draw_number("autosave", "%.1f s", 0.5, 10.0)
         draw_wrapped(
-            self._context.palette.dim, "Unsaved work is saved separately from your files, and offered after a crash."
+            self._context.palette.dim,
+            translate("Unsaved work is saved separately from your files, and offered after a crash."),
         )
-        _draw_heading(self._context, "Memory")
-        label("For pictures", _LABELS)
+        _draw_heading(self._context, translate("Memory"))
+        label(translate("For pictures"), _label_width())
         self._draw_number("memory_budget", "%.0f MiB", 64.0, 16384.0, logarithmic=True)
         draw_wrapped(
-            self._context.palette.dim, "Graphics memory in which results are kept. Takes effect at the next start."
+            self._context.palette.dim,
+            translate("Graphics memory in which results are kept. Takes effect at the next start."),
         )
-        _draw_heading(self._context, "Presets")
+        _draw_heading(self._context, translate("Presets"))
         self._draw_folders(
             "preset",
-            f"Folders with graphs that everybody here shares. Your own are in {own_presets_folder()}; folders in "
-            f"${PRESETS_VARIABLE} are listed too.",
+            translate(
+                "Folders with graphs that everybody here shares. Your own are in {folder}; folders in "
+                "${variable} are listed too.",
+                folder=own_presets_folder(),
+                variable=PRESETS_VARIABLE,
+            ),
         )
-        _draw_heading(self._context, "Shaders")
+        _draw_heading(self._context, translate("Shaders"))
         self._draw_folders(
             "isf",
-            "Folders with .fs files in the Interactive Shader Format; their shaders can be "
-            f"added to the graph. {', '.join(CUSTOMARY)} are always searched too.",
+            translate(
+                "Folders with .fs files in the Interactive Shader Format; their shaders can be added to "
+                "the graph. {folders} are always searched too.",
+                folders=", ".join(CUSTOMARY),
+            ),
         )
-        _draw_heading(self._context, "Files")
+        _draw_heading(self._context, translate("Files"))
         folder = str(self._context.store.file.parent)
-        draw_wrapped(self._context.palette.dim, f"Preferences, recovered work and thumbnails are in {folder}")
-        if imgui.button("Copy the path"):
+        draw_wrapped(
+            self._context.palette.dim,
+            translate("Preferences, recovered work and thumbnails are in {folder}", folder=folder),
+        )
+        if imgui.button(translate_label("Copy the path")):
             self._context.clipboard.put(folder)
         imgui.same_line()
         default = Preferences()
-        if imgui.button("Reset all preferences"):
+        if imgui.button(translate_label("Reset all preferences")):
             lists = ("recent", "folders", "extra", "shortcuts", "hint_seen", "isf_folders", "preset_folders")
             _change(self._context, **{name: value for name, value in vars(default).items() if name not in lists})
         record(self._context, "reset preferences")
@@ -144,17 +176,17 @@ class PreferencesDialog:
         folders: tuple[str, ...] = getattr(context.store.current, name)
         draw_wrapped(context.palette.dim, sentence)
         for index, folder in enumerate(folders):
-            if quiet_button(context, icons.ICON_FA_XMARK, f"forget {kind} {index}", "Remove this folder"):
+            if quiet_button(context, icons.ICON_FA_XMARK, f"forget {kind} {index}", translate("Remove this folder")):
                 _change(context, **{name: tuple(other for other in folders if other != folder)})
                 context.store.flush()
             imgui.same_line()
             imgui.align_text_to_frame_padding()
-            note = "" if os.path.isdir(folder) else "  (folder not found)"  # noqa: PTH112
+            note = "" if os.path.isdir(folder) else translate("  (folder not found)")  # noqa: PTH112
             imgui.text_unformatted(f"{folder}{note}")
         imgui.set_next_item_width(320 * ui_scale())
         entered, text = imgui.input_text_with_hint(
             f"##{kind} folder",
-            "path of a folder",
+            translate("path of a folder"),
             self._folders.get(kind, ""),
             int(imgui.InputTextFlags_.enter_returns_true),
         )
@@ -162,7 +194,7 @@ class PreferencesDialog:
         record(context, f"field {kind} folder")
         imgui.same_line()
         typed = text.strip().strip('"')
-        if (imgui.button(f"Add##{kind}") or entered) and typed:
+        if (imgui.button(make_label(translate("Add"), f"{kind}")) or entered) and typed:
             whole = str(Path(typed).expanduser().absolute())
             _change(context, **{name: tuple(dict.fromkeys((*folders, whole)))})
             context.store.flush()
@@ -203,11 +235,22 @@ def _draw_heading(context: PreferencesContext, title: str) -> None:
 
 
 def _draw_switch(context: PreferencesContext, name: str, title: str) -> None:
-    changed, value = imgui.checkbox(title, getattr(context.store.current, name))
+    changed, value = imgui.checkbox(make_label(title, name), getattr(context.store.current, name))
     record(context, f"preference {name}")
     if changed:
         _change(context, **{name: value})
 
 
+def _label_width() -> float:
+    """The width of the column of names, in units."""
+    return measure_labels(map(translate, _TITLES), _LABELS)
+
+
+def _measure_choices(choices: Iterable[str]) -> float:
+    """The width of a list with these choices and its arrow."""
+    widest = max(imgui.calc_text_size(choice).x for choice in choices)
+    return max(widest + 2 * imgui.get_style().frame_padding.x + imgui.get_frame_height(), 160 * ui_scale())
+
+
 def _scale(scale: float) -> str:
-    return f"{scale:.0%}" if scale else "Same as the system"
+    return f"{scale:.0%}" if scale else translate("Same as the system")

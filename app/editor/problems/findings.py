@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from ...authoring.edits.element_id import ElementId
 from ...authoring.log import Level
 from ...errors import ShaderError
+from ...language.translation import translate
 
 if TYPE_CHECKING:
     from .context import ProblemsContext
@@ -43,7 +44,7 @@ def _collect(context: ProblemsContext) -> Iterator[ListedProblem]:
     for sentence in service_faults(context):
         yield ListedProblem("warning", "", sentence)
     for name, detail in context.faults.items():
-        yield ListedProblem("error", "", f"the panel {name} failed; the document is safe", detail)
+        yield ListedProblem("error", "", translate("the panel {name} failed; the document is safe", name=name), detail)
 
 
 def service_faults(context: ProblemsContext) -> Iterable[str]:

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
+from ...language.translation import translate, translate_plural
 from ..theme.style import ui_scale, vec4
 from ..toolkit.buttons import align_right, quiet_button
+from ..toolkit.labels import make_label, translate_label
 from ..toolkit.places import record
 from ..toolkit.words import ICONS, draw_dim, draw_empty_panel, draw_wrapped, font, level_color, tip
 from .findings import ListedProblem, list_problems, show_element
@@ -16,7 +18,9 @@ from .findings import ListedProblem, list_problems, show_element
 if TYPE_CHECKING:
     from .context import ProblemsContext
 
-_COPY = f"{icons.ICON_FA_COPY} Copy"
+
+def _copy_label() -> str:
+    return f"{icons.ICON_FA_COPY}  {translate('Copy')}"
 
 
 class ProblemsPanel:
@@ -32,14 +36,17 @@ class ProblemsPanel:
             draw_empty_panel(
                 self._context,
                 icons.ICON_FA_CIRCLE_CHECK,
-                "No problems",
-                "Errors and warnings appear here.",
+                translate("No problems"),
+                translate("Errors and warnings appear here."),
             )
             return
         imgui.align_text_to_frame_padding()
-        draw_dim(self._context, "1 problem" if len(problems) == 1 else f"{len(problems)} problems")
-        align_right(_COPY)
-        if quiet_button(self._context, f"{icons.ICON_FA_COPY}  Copy", "copy problems", "Copy all as text"):
+        draw_dim(
+            self._context,
+            translate_plural("{count} problem", "{count} problems", len(problems)),
+        )
+        align_right(_copy_label())
+        if quiet_button(self._context, _copy_label(), "copy problems", translate("Copy all as text")):
             self._context.clipboard.put("\n".join(problem_text(finding) for finding in problems))
         if imgui.begin_child("problems"):
             for index, finding in enumerate(problems):
@@ -64,9 +71,9 @@ class ProblemsPanel:
             self._context.log.attempt(lambda: show_element(self._context, finding.where))
         record(self._context, f"problem {index}")
         if finding.where:
-            tip("Click to show the node")
+            tip(translate("Click to show the node"))
         if imgui.begin_popup_context_item("menu"):
-            if imgui.menu_item(_COPY, "", False)[0]:
+            if imgui.menu_item(make_label(_copy_label(), "copy"), "", False)[0]:
                 self._context.clipboard.put(problem_text(finding))
             imgui.end_popup()
         after = imgui.get_cursor_pos()
@@ -89,11 +96,11 @@ class ProblemsPanel:
 
 def _draw_detail(context: ProblemsContext, detail: str, name: str) -> None:
     """Draw a traceback, to copy it into a bug report."""
-    opened = imgui.tree_node("Details for a bug report")
+    opened = imgui.tree_node(translate_label("Details for a bug report"))
     record(context, name)
     if not opened:
         return
-    if quiet_button(context, f"{icons.ICON_FA_COPY}  Copy", f"copy {name}", "Copy the details"):
+    if quiet_button(context, _copy_label(), f"copy {name}", translate("Copy the details")):
         context.clipboard.put(detail)
     with font(context, "mono", 13.0):
         draw_wrapped(context.palette.dim, detail.rstrip())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -11,8 +12,10 @@ from typing import TYPE_CHECKING, Literal
 from halation.nodes import Kind
 from msgspec.structs import replace
 
-from ...authoring.render_queue.queue import QueuedRender, RenderJob
+from ...authoring.render_queue.queue import QueuedFiles, QueuedRender, RenderJob
+from ...authoring.render_queue.queued_files import list_entries
 from ...errors import HalationError, UsageError
+from ...graph import Graph
 from ...graph.frames import (
     MOST_FRAMES,
     Pattern,
@@ -23,6 +26,7 @@ from ...graph.frames import (
     parse_frames,
     remove_frame_number,
 )
+from ...language.translation import mark, translate
 from ...media import PICTURE_ENDINGS
 from ...media.sequences import find_sequence
 from ...media.video.codecs import WRITABLE as VIDEO_ENDINGS
@@ -34,17 +38,20 @@ if TYPE_CHECKING:
     from .context import RendersContext
 
 Sizing = Literal["full size", "scale", "size"]
-Extent = Literal["this frame", "all frames", "playback range", "listed frames"]
+Extent = Literal["this frame", "all frames", "playback range", "listed frames", "many files"]
 Depth = Literal["", "half", "float"]
 
-DITHERS: tuple[tuple[Dither, str], ...] = (("blue", "blue noise"), ("none", "none: bands in dark ramps"))
+DITHERS: tuple[tuple[Dither, str], ...] = (("blue", mark("blue noise")), ("none", mark("none: bands in dark ramps")))
 DEPTHS: tuple[tuple[Depth, str], ...] = (
-    ("", "default of the format"),
-    ("half", "16 bit"),
-    ("float", "32 bit (16 in PNG and TIFF)"),
+    ("", mark("default of the format")),
+    ("half", mark("16 bit")),
+    ("float", mark("32 bit (16 in PNG and TIFF)")),
 )
 _OTHER_ENDINGS = (".jpeg", ".tiff", ".m4v")
 """Second names of formats, which need not be offered."""
+
+FILE_STEM = "{stem}"
+"""The place for the name of a file without its ending, in the name of what is written for it."""
 
 _FRESH = 1.0
 """Seconds for which the last look at the disk is reused."""
@@ -79,14 +86,18 @@ class RenderForm:
     """The chosen frames; None for all frames if there are several."""
     listed: str = ""
     """The typed frames."""
+    many: QueuedFiles = field(default_factory=lambda: QueuedFiles(""))
+    """The typed files that the graph is rendered for, one after the other, and the input that they fill."""
     jobs: int = 1
+    cluster: str = ""
+    """The typed address of a cluster."""
     resume: bool = False
     _seen: tuple[object, float, RenderTargets] = (None, 0.0, RenderTargets())
 
     # --- frames ------------------------------------------------------------------------------------------------------
 
     def extents(self) -> dict[Extent, tuple[int, ...]]:
-        """The choices of frames. Listed frames are empty while the text is invalid."""
+        """The choices of frames. Listed frames are empty while the text is invalid; many files have their own."""
         session = self.context.session
         first, last = session.time.frames
         extents: dict[Extent, tuple[int, ...]] = {"this frame": (session.time.frame,)}
@@ -96,6 +107,8 @@ class RenderForm:
             if (low, high) != (first, last):
                 extents["playback range"] = tuple(range(low, high + 1))
         extents["listed frames"] = _parse_listed(self.listed)[0]
+        if session.root.inputs:
+            extents["many files"] = ()
         return extents
 
     def extent_of(self) -> Extent:
@@ -112,14 +125,21 @@ class RenderForm:
         """Choose other frames. Typed file names get a frame number if they need one."""
         if extent == "listed frames" and not self.listed:
             self.listed = format_frames(self.frames())
+        if self.has_many_files != (extent == "many files"):
+            self.files.clear()
         self.extent = extent
-        if extent != "this frame":
+        if extent not in ("this frame", "many files"):
             self.files = {name: _add_number(path) if path else "" for name, path in self.files.items()}
 
     @property
     def list_fault(self) -> str:
         """Why the typed frames are invalid, "" if they are valid."""
         return _parse_listed(self.listed)[1]
+
+    @property
+    def has_many_files(self) -> bool:
+        """True if the graph is rendered once for each of many files."""
+        return self.extent_of() == "many files"
 
     # --- files -------------------------------------------------------------------------------------------------------
 
@@ -128,6 +148,10 @@ class RenderForm:
         last = self.context.store.folder("export")
         session = self.context.session
         folder = Path(last) if last else session.path.absolute().parent if session.path else Path.home()
+        if self.has_many_files:
+            return folder / (
+                f"{FILE_STEM}{self.format}" if len(session.root.outputs) == 1 else f"{FILE_STEM}_{output}{self.format}"
+            )
         name = session.name if len(session.root.outputs) == 1 else f"{session.name}_{output}"
         plain = f"{name}{self.format}"
         return folder / (plain if self.extent_of() == "this frame" else _add_number(plain))
@@ -156,12 +180,27 @@ class RenderForm:
 
     def targets(self, time_now: float) -> RenderTargets:
         """The files that would be written; the disk is read again after a second, or when the choices change."""
+        if self.has_many_files:
+            return self._find_many_targets(time_now)
         frames = self.frames()
         paths = tuple(dict.fromkeys(str(self.file(name)) for name in self.list_chosen_outputs()))
         key = paths, frames, self.list_fault if not frames else ""
         if self._seen[0] != key or time_now - self._seen[1] > _FRESH:
             self._seen = (key, time_now, find_targets(paths, frames, key[2], self.context.session.sandbox))
         return self._seen[2]
+
+    def _find_many_targets(self, time_now: float) -> RenderTargets:
+        session = self.context.session
+        destinations = self._list_destinations()
+        bindings = {name: str(item) for name, item in session.bindings.items()}
+        key = destinations, self.many, session.root, tuple(bindings.items())
+        if self._seen[0] != key or time_now - self._seen[1] > _FRESH:
+            targets = find_many_targets(session.root, self.many, destinations, bindings, session.sandbox)
+            self._seen = (key, time_now, targets)
+        return self._seen[2]
+
+    def _list_destinations(self) -> tuple[tuple[str, Path], ...]:
+        return tuple((name, self.file(name)) for name in self.list_chosen_outputs())
 
     def options(self) -> RenderJob:
         """The choices as options of the render."""
@@ -173,7 +212,7 @@ class RenderForm:
             view=self.view,
             dither=self.dither,
             resume=self.resume and not any(is_video(str(self.file(name))) for name in self.list_chosen_outputs()),
-            processes=self.jobs if len(frames) > 1 else 1,
+            processes=self.jobs if (len(frames) > 1 or self.has_many_files) and not self.cluster else 1,
         )
         if self.sizing == "scale":
             return replace(job, scale=self.scale)
@@ -181,13 +220,18 @@ class RenderForm:
 
     def start(self) -> QueuedRender:
         """Add the render to the queue. Raises UsageError or GraphError."""
-        files = [(name, self.file(name)) for name in self.list_chosen_outputs()]
-        if not self.frames():
+        files = self._list_destinations()
+        if not self.frames() and not self.has_many_files:
             raise UsageError(self.list_fault)
         render = self.context.exports.start(
-            self.context.session.root, files, dict(self.context.session.bindings), self.options()
+            self.context.session.root,
+            files,
+            dict(self.context.session.bindings),
+            self.options(),
+            files=self.many if self.has_many_files else None,
+            cluster=self.cluster,
         )
-        if files:
+        if files and "{" not in str(files[0][1].parent):
             self.context.store.note_folder("export", files[0][1])
         self._seen = (None, 0.0, RenderTargets())
         return render
@@ -219,7 +263,7 @@ def _add_number(path: str) -> str:
 def find_targets(paths: tuple[str, ...], frames: tuple[int, ...], fault: str, sandbox: Sandbox) -> RenderTargets:
     """The files that a render would write, and how many of them exist."""
     if fault or not paths:
-        return RenderTargets(fault=fault or "Choose an output to render.")
+        return RenderTargets(fault=fault or translate("Choose an output to render."))
     try:
         for path in paths:
             check_numbered(path, frames)
@@ -229,6 +273,25 @@ def find_targets(paths: tuple[str, ...], frames: tuple[int, ...], fault: str, sa
         return RenderTargets(fault=str(error))
     count = sum(1 if is_video(path) else len(frames) for path in paths)
     return RenderTargets(count, names[0], names[1], exist)
+
+
+def find_many_targets(
+    graph: Graph,
+    many: QueuedFiles,
+    destinations: tuple[tuple[str, Path], ...],
+    bindings: Mapping[str, str],
+    sandbox: Sandbox,
+) -> RenderTargets:
+    """The files that a render of many files would write. The frames of sequences are not counted."""
+    if not destinations:
+        return RenderTargets(fault=translate("Choose an output to render."))
+    try:
+        entries = list_entries(graph, many, destinations, bindings, sandbox)
+    except HalationError as error:
+        return RenderTargets(fault=str(error))
+    paths = [path for entry in entries for _, path in entry.destinations]
+    exist = sum(os.path.isfile(path) for path in paths)  # noqa: PTH113 - False for a path that no system allows
+    return RenderTargets(len(paths), paths[0], paths[-1], exist)
 
 
 def _at(path: str, frame: int) -> str:

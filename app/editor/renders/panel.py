@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
+from ...language.translation import translate
 from ..theme.style import ui_scale
 from ..toolkit.words import draw_empty_panel
 from .form import RenderForm
@@ -37,8 +38,8 @@ class RendersPanel:
     def draw(self) -> None:
         """Draw into the current window."""
         if not self._context.session.root.outputs and not self._context.exports.all:
-            sentence = "Add a graph output and link a node to it."
-            draw_empty_panel(self._context, icons.ICON_FA_FILM, "Nothing to render", sentence)
+            sentence = translate("Add a graph output and link a node to it.")
+            draw_empty_panel(self._context, icons.ICON_FA_FILM, translate("Nothing to render"), sentence)
             return
         form = self._forms.setdefault(self._context.session.path, RenderForm(self._context))
         room, scale = imgui.get_content_region_avail(), ui_scale()

@@ -13,8 +13,10 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...authoring.flipbook import FlipbookStrip
 from ...authoring.render_queue.queue import QueuedRender, RenderState
+from ...language.translation import mark, translate
 from ..theme.style import u32, ui_scale, vec4
 from ..toolkit.buttons import align_right, quiet_button, width_of_buttons
+from ..toolkit.labels import translate_label
 from ..toolkit.places import record
 from ..toolkit.textures import Textures, fit_picture
 from ..toolkit.thumbnails import FileThumbnails
@@ -76,18 +78,24 @@ class RenderQueueView:
         """Draw into the current window."""
         exports = self._context.exports
         if not exports.all:
-            sentence = "Renders appear here. You can keep working while they run."
-            draw_empty_panel(self._context, icons.ICON_FA_FILM, "No renders yet", sentence)
+            sentence = translate("Renders appear here. You can keep working while they run.")
+            draw_empty_panel(self._context, icons.ICON_FA_FILM, translate("No renders yet"), sentence)
             return
         running, waiting = exports.running, exports.waiting
         ended = [render for render in exports.all if render not in running and render not in waiting]
         ended.sort(key=lambda render: -render.ended_at)
         imgui.align_text_to_frame_padding()
-        counts = ((len(running), "running"), (len(waiting), "waiting"), (len(ended), "ended"))
-        draw_dim(self._context, ", ".join(f"{count} {state}" for count, state in counts if count))
-        align_right(f"{icons.ICON_FA_TRASH} Clear")
-        doc = "Remove renders that have ended from the list"
-        if quiet_button(self._context, f"{icons.ICON_FA_TRASH}  Clear", "clear renders", doc, enabled=bool(ended)):
+        counts = (
+            (len(running), mark("{count} running")),
+            (len(waiting), mark("{count} waiting")),
+            (len(ended), mark("{count} ended")),
+        )
+        draw_dim(self._context, ", ".join(translate(words, count=count) for count, words in counts if count))
+        align_right(f"{icons.ICON_FA_TRASH}  {translate('Clear')}")
+        doc = translate("Remove renders that have ended from the list")
+        if quiet_button(
+            self._context, f"{icons.ICON_FA_TRASH}  {translate('Clear')}", "clear renders", doc, enabled=bool(ended)
+        ):
             exports.clear()
         self._forget(exports.all)
         for index, export in enumerate((*running, *waiting, *ended)):
@@ -147,36 +155,54 @@ class RenderQueueView:
 
     def _buttons(self, index: int, export: QueuedRender, turn: int) -> list[_Button]:
         buttons: list[_Button] = []
-        first, folder = export.destinations[0][1], export.destinations[0][1].parent
+        folder = export.folder
+        first = (
+            export.written_files[-1] if export.has_many_files and export.written_files else export.destinations[0][1]
+        )
         over = export.state not in ("running", "waiting")
-        if export.written_files:
-            doc = "Compare it with another version, in the viewer"
+        if export.written_files and not export.has_many_files:  # many files are no sequence
+            doc = translate("Compare it with another version, in the viewer")
             buttons.append(
-                _Button(icons.ICON_FA_PLAY, "play", "Play it in the viewer", partial(_play, self._context, export))
+                _Button(
+                    icons.ICON_FA_PLAY,
+                    "play",
+                    translate("Play it in the viewer"),
+                    partial(_play, self._context, export),
+                )
             )
             buttons.append(
                 _Button(icons.ICON_FA_TABLE_COLUMNS, "compare", doc, partial(imgui.open_popup, f"compare {index}"))
             )
         if export.state == "waiting" and turn > len(self._context.exports.running):
             sooner = partial(self._context.exports.move, export, -1)
-            buttons.append(_Button(icons.ICON_FA_ARROW_UP, "earlier", "Move up", sooner))
+            buttons.append(_Button(icons.ICON_FA_ARROW_UP, "earlier", translate("Move up"), sooner))
         if export.state in ("failed", "cancelled"):
-            doc = "Continue: frames that are up to date are skipped" if export.done else "Try again"
+            doc = (
+                translate("Continue: frames that are up to date are skipped") if export.done else translate("Try again")
+            )
             buttons.append(
                 _Button(icons.ICON_FA_ROTATE_RIGHT, "again", doc, partial(self._context.exports.resume, export))
             )
         if export.notes:
             lit = export in self._open
             buttons.append(
-                _Button(icons.ICON_FA_LIST_UL, "notes", "Show messages", partial(self._toggle_notes, export), lit)
+                _Button(
+                    icons.ICON_FA_LIST_UL, "notes", translate("Show messages"), partial(self._toggle_notes, export), lit
+                )
             )
         if over:
             copy = partial(self._context.clipboard.put, str(first))
-            buttons.append(_Button(icons.ICON_FA_COPY, "copy path", "Copy the path", copy))
+            buttons.append(_Button(icons.ICON_FA_COPY, "copy path", translate("Copy the path"), copy))
         show = partial(_open, self._context, folder)
-        buttons.append(_Button(icons.ICON_FA_FOLDER_OPEN, "open folder", f"Show {folder}", show))
+        buttons.append(
+            _Button(icons.ICON_FA_FOLDER_OPEN, "open folder", translate("Show {folder}", folder=folder), show)
+        )
         if not over:
-            doc = "Remove it from the queue" if export.state == "waiting" else "Stop it. Finished frames are kept."
+            doc = (
+                translate("Remove it from the queue")
+                if export.state == "waiting"
+                else translate("Stop it. Finished frames are kept.")
+            )
             buttons.append(_Button(icons.ICON_FA_XMARK, "cancel", doc, export.cancel))
         return buttons
 
@@ -184,7 +210,11 @@ class RenderQueueView:
         """Draw the menu of renders to compare with."""
         if not imgui.begin_popup(f"compare {index}"):
             return
-        candidates = [render for render in self._context.exports.all if render is not export and render.written_files]
+        candidates = [
+            render
+            for render in self._context.exports.all
+            if render is not export and render.written_files and not render.has_many_files
+        ]
         for place, candidate in enumerate(candidates):
             path = candidate.destinations[0][1]
             name = f"{path.parent.name}/{title(candidate)}" if title(candidate) == title(export) else title(candidate)
@@ -197,7 +227,7 @@ class RenderQueueView:
             imgui.text_unformatted(name)
         if candidates:
             imgui.separator()
-        if imgui.menu_item("Other pictures...", "", False)[0]:
+        if imgui.menu_item(translate_label("Other pictures..."), "", False)[0]:
             self._context.log.attempt(partial(_choose, self._context, export))
         record(self._context, "compare with other")
         imgui.end_popup()
@@ -205,9 +235,9 @@ class RenderQueueView:
     def _draw_details(self, export: QueuedRender) -> None:
         """Draw what is computed now, and the last written file."""
         last = export.written_files[-1] if export.written_files else None
-        parts = [under_way(export)] if export.state == "running" else [str(export.destinations[0][1].parent)]
+        parts = [under_way(export)] if export.state == "running" else [str(export.folder)]
         if last is not None and export.state == "running":
-            parts.append(f"last: {last.name}")
+            parts.append(translate("last: {name}", name=last.name))
         draw_dim(self._context, cut_middle("   ".join(parts), imgui.get_content_region_avail().x))
         tip(f"{last}" if last is not None else "")
 
@@ -285,4 +315,6 @@ def _choose(context: RendersContext, export: QueuedRender) -> None:
 def _open(context: RendersContext, folder: Path) -> None:
     if not show_folder(folder):
         context.clipboard.put(str(folder))
-        context.log.add(f"{folder}: no program on this machine shows folders; the path is on the clipboard")
+        context.log.add(
+            translate("{folder}: no program on this machine shows folders; the path is on the clipboard", folder=folder)
+        )

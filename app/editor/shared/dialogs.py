@@ -9,6 +9,7 @@ from typing import Literal
 
 from halation.nodes import Value
 
+from ...language.translation import translate
 from .window_commands import PanelTitle
 
 Purpose = Literal["graph", "image", "table", "scene", "font", "config", "code", "export"]
@@ -34,13 +35,13 @@ def browse(declaration: Value, then: Callable[[Path], object]) -> Browse:
     """A request for a file of the kind that a value takes."""
     match declaration.holds:
         case "table":
-            return Browse("Choose a Color Table", "table", then)
+            return Browse(translate("Choose a Color Table"), "table", then)
         case "scene":
-            return Browse("Choose Meshes", "scene", then)
+            return Browse(translate("Choose Meshes"), "scene", then)
         case "font":
-            return Browse("Choose a Font", "font", then)
+            return Browse(translate("Choose a Font"), "font", then)
         case "picture" | "render":
-            return Browse("Choose an Image", "image", then)
+            return Browse(translate("Choose an Image"), "image", then)
 
 
 @dataclass(frozen=True)
@@ -63,6 +64,8 @@ class Dialogs:
     "node", "panel"."""
     page: PanelTitle | None = None
     """The panel that the dialog "panel" explains."""
+    matches: bool = False
+    """Whether the window is open that matches a reference. It is no dialog: people work on beside it."""
 
     def toggle(self, name: str) -> None:
         """Open a dialog, or close it."""

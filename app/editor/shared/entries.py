@@ -13,6 +13,8 @@ from halation.nodes import Kind, Node, Plain
 from ...authoring.background.shader_files import ShaderFile
 from ...authoring.edits.coding import CODE, make_starter_node
 from ...authoring.library import PresetFacts
+from ...language.translation import mark, translate
+from .declared_words import name_choice, name_preset, name_type, spell_out, summarize_type
 from .fuzzy import match
 
 GROUP, GRAPH, SHADER = "group", "graph", "code"
@@ -62,12 +64,19 @@ class CatalogEntry:
     """What other programs call it."""
     values: tuple[tuple[str, Plain], ...] = ()
     """Values of the new node that are not its defaults."""
+    translated: str = ""
+    """The title in the chosen language, where the title is a word of the catalogue."""
+
+    @property
+    def shown(self) -> str:
+        """The title, as the user reads it."""
+        return self.translated or self.title
 
     @cached_property
     def names(self) -> tuple[tuple[tuple[str, ...], bool], ...]:
         """The words of each name, and whether it is an alias. The title of a plug-in's node is one with the name of
         its package and one without: `soft glow (acme glow)`."""
-        titles = (self.title, self.title.partition(" (")[0])
+        titles = dict.fromkeys((self.title, self.title.partition(" (")[0], self.shown))
         return (
             *((split_words(title), False) for title in titles),
             *((split_words(alias), True) for alias in self.aliases),
@@ -79,16 +88,16 @@ class CatalogEntry:
         return f"{self.category} {self.doc}" if self.category not in (GROUP, GRAPH) else ""
 
 
-def spell_out(name: str) -> str:
-    """An id with spaces in place of underscores, for the user."""
-    return name.replace("_", " ")
-
-
 def node_entries(types: Mapping[str, type[Node]]) -> tuple[CatalogEntry, ...]:
     """Every node type, in the order of the menu."""
     return tuple(
         CatalogEntry(
-            id, kind.title, kind.category, (kind.__doc__ or "").strip().partition("\n")[0], aliases=kind.aliases
+            id,
+            kind.title,
+            kind.category,
+            summarize_type(kind),
+            aliases=kind.aliases,
+            translated=name_type(kind.title),
         )
         for id, kind in types.items()
     )
@@ -103,9 +112,10 @@ def mode_entries(types: Mapping[str, type[Node]]) -> tuple[CatalogEntry, ...]:
             MERGE,
             mode,
             kind.category,
-            f"Merge two pictures with the mode {mode}.",
+            translate("Merge two pictures with the mode {mode}.", mode=name_choice(mode)),
             aliases=(f"merge {mode}", f"{mode} blend", *_MODE_ALIASES.get(mode, ())),
             values=(("mode", mode),),
+            translated=name_choice(mode),
         )
         for mode in modes
         if kind is not None
@@ -114,8 +124,8 @@ def mode_entries(types: Mapping[str, type[Node]]) -> tuple[CatalogEntry, ...]:
 
 def code_entries() -> tuple[CatalogEntry, ...]:
     """Nodes of new code."""
-    doc = "GLSL of your own: the function's signature declares sockets and values."
-    return (CatalogEntry(CODE, "code", make_starter_node().category, doc),)
+    doc = translate("GLSL of your own: the function's signature declares sockets and values.")
+    return (CatalogEntry(CODE, "code", make_starter_node().category, doc, translated=name_type("code")),)
 
 
 def shader_entries(files: Iterable[ShaderFile]) -> tuple[CatalogEntry, ...]:
@@ -133,8 +143,9 @@ def preset_entries(presets: Iterable[PresetFacts]) -> tuple[CatalogEntry, ...]:
             str(preset.path),
             spell_out(preset.path.stem),
             GROUP,
-            preset.fault or preset.about.doc or "A preset: a ready graph, added as a group.",
+            preset.fault or translate(preset.about.doc) or translate("A preset: a ready graph, added as a group."),
             aliases=preset.about.tags,
+            translated=name_preset(preset.path.stem),
         )
         for preset in presets
     )
@@ -143,17 +154,31 @@ def preset_entries(presets: Iterable[PresetFacts]) -> tuple[CatalogEntry, ...]:
 def graph_entries() -> tuple[CatalogEntry, ...]:
     """Inputs, outputs, frames and comments."""
     ends = [
-        CatalogEntry(f"{side}:{kind}", f"{kind} {side}".lower(), GRAPH, doc)
-        for side, doc in (
-            ("input", "The inputs of the graph: what comes from outside."),
-            ("output", "The outputs of the graph: what it gives to the outside."),
+        CatalogEntry(
+            f"{side}:{kind}",
+            f"{kind} {side}".lower(),
+            GRAPH,
+            doc,
+            translated=translate(words, kind=translate(kind.lower(), "kind")),
+        )
+        for side, words, doc in (
+            ("input", mark("{kind} input"), translate("The inputs of the graph: what comes from outside.")),
+            ("output", mark("{kind} output"), translate("The outputs of the graph: what it gives to the outside.")),
         )
         for kind in Kind
     ]
     return (
         *ends,
-        CatalogEntry("frame", "frame", GRAPH, "A titled area; the nodes on it move with it."),
-        CatalogEntry("comment", "comment", GRAPH, "A note on the canvas."),
+        CatalogEntry(
+            "frame",
+            "frame",
+            GRAPH,
+            translate("A titled area; the nodes on it move with it."),
+            translated=translate("frame", "decor"),
+        ),
+        CatalogEntry(
+            "comment", "comment", GRAPH, translate("A note on the canvas."), translated=translate("comment", "decor")
+        ),
     )
 
 

@@ -7,6 +7,11 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 _LETTER, _WORD_START, _FIRST, _NEXT, _GAP, _SHORT = 1.0, 8.0, 2.0, 8.0, 0.3, 0.05
+"""What a letter that matches is worth, more at the start of a word, of the text, and right after the one before; what
+each letter between costs, and each of the text. Chosen by judgement: of 653 starts, initials and pieces of titles of
+nodes 492 find their node first. Half or twice one of the numbers gives 488 to 494, none of `_WORD_START` 442, none of
+`_NEXT` 468, and none of another one 491 to 494.
+"""
 
 
 @dataclass(frozen=True, slots=True)

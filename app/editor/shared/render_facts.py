@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Protocol
 from halation.nodes import Matte, Node, Value, matte_of
 
 from ...graph import Graph, Port
+from ...language.translation import translate
 from ...render_layers.conventions import Convention
 from ...render_layers.naming import Role
 from ...render_layers.overview import RenderOverview, RoleUse
 from ...render_layers.report import describe_certainty
+from .declared_words import name_choice, name_choices
 
 if TYPE_CHECKING:
     from ...authoring.background.render_overviews import RenderOverviews
@@ -51,7 +53,7 @@ def overview_of(context: RenderContext, id: str) -> RenderOverview | str | None:
     """The contents of a node's render; a sentence if it is missing or unreadable, None while it is being read."""
     graph = context.session.graph
     file = render_file(graph, id)
-    return "no file" if file is None else context.renders.overview(file, find_named_layers(graph.nodes[id]))
+    return translate("no file") if file is None else context.renders.overview(file, find_named_layers(graph.nodes[id]))
 
 
 def find_named_layers(item: object) -> Mapping[str, str]:
@@ -70,15 +72,25 @@ def use_of(context: RenderContext, port: Port, declaration: Value) -> RoleUse | 
 
 def first_words(use: RoleUse | None) -> str:
     """The text of a layer field that is left to detection."""
+    detected = name_choice(FOUND)
     if use is None:
-        return FOUND
-    return f"{FOUND}: {use.found_layer}" if use.found_layer else "choose a layer" if use.is_open else "not found"
+        return detected
+    return (
+        f"{detected}: {use.found_layer}"
+        if use.found_layer
+        else translate("choose a layer")
+        if use.is_open
+        else translate("not found")
+    )
 
 
 def convention_words(declaration: Value, use: RoleUse | None) -> tuple[str, ...]:
     """The choices of a convention; the first one names the detected convention."""
     rule = use.rule if use else None
-    return (f"{FOUND}: {rule.words}" if rule else FOUND, *declaration.choices[1:])
+    return (
+        f"{name_choice(FOUND)}: {rule.words}" if rule else name_choice(FOUND),
+        *name_choices(declaration.choices[1:]),
+    )
 
 
 def rule_words(rule: Convention, *, kind_shown: bool) -> str:
@@ -100,8 +112,12 @@ def matte_at(context: RenderContext, id: str) -> Matte | str | None:
     matte = matte_of(overview.mattes, kind)
     if matte is not None:
         return matte
-    kinds = [matte.kind or "unnamed" for matte in overview.mattes]
-    return f"no cryptomatte of kind {kind} in this file; it has {', '.join(kinds) or 'none'}"
+    kinds = [matte.kind or translate("unnamed") for matte in overview.mattes]
+    return translate(
+        "no cryptomatte of kind {kind} in this file; it has {kinds}",
+        kind=kind,
+        kinds=", ".join(kinds) or translate("none"),
+    )
 
 
 def pick_value(item: object) -> Value | None:

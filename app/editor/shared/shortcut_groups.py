@@ -5,30 +5,31 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
+from ...language.translation import mark
 from .action import Actions, ListedAction
 
 _SCOPES = {
-    "graph": "Graph, with the mouse over it",
-    "viewer": "Viewer, with the mouse over it",
-    "animation": "Animation, with the mouse over it",
+    "graph": mark("Graph, with the mouse over it", "menu"),
+    "viewer": mark("Viewer, with the mouse over it", "menu"),
+    "animation": mark("Animation, with the mouse over it", "menu"),
 }
 
 MOUSE: tuple[tuple[str, str], ...] = (
-    ("Middle drag, Alt+drag", "Move the view"),
-    ("Wheel", "Zoom"),
-    ("Right click", "Context menu"),
-    ("Shift+click", "Select more"),
-    ("Drag on empty space", "Select with a box"),
-    ("Ctrl+Right drag", "Cut links"),
+    (mark("Middle drag, Alt+drag"), mark("Move the view")),
+    (mark("Wheel"), mark("Zoom")),
+    (mark("Right click"), mark("Context menu")),
+    (mark("Shift+click"), mark("Select more")),
+    (mark("Drag on empty space"), mark("Select with a box")),
+    (mark("Ctrl+Right drag"), mark("Cut links")),
 )
 
 
 def group_actions(actions: Actions, every: bool = False) -> Iterator[tuple[str, tuple[ListedAction, ...]]]:
-    """Actions by scope and menu, those with a shortcut; `every` gives all of them."""
+    """Actions by scope and menu, those with a shortcut; `every` gives all. The titles have the context "menu"."""
     by_title: dict[str, list[ListedAction]] = {}
     for action in actions.all:
         if every or actions.shortcut(action.id):
-            title = _SCOPES.get(action.scope, action.menu.split("/")[0] or "Everywhere")
+            title = _SCOPES.get(action.scope, action.menu.split("/")[0] or mark("Everywhere", "menu"))
             by_title.setdefault(title, []).append(action)
     return ((title, tuple(group)) for title, group in by_title.items())
 

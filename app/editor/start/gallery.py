@@ -10,11 +10,14 @@ from halation.presets import picture
 from imgui_bundle import ImVec2, imgui
 
 from ...authoring.preset_versions import PresetVersion, list_versions, restore_version
+from ...language.translation import translate
 from ...media.pictures.thumbnail import load_thumbnail
 from ...resources.sandbox import UNRESTRICTED
-from ..shared.entries import preset_entries, rank_entries, spell_out
+from ..shared.declared_words import name_category, name_preset, raise_first
+from ..shared.entries import preset_entries, rank_entries
 from ..theme.style import u32, ui_scale
 from ..toolkit.buttons import outline, quiet_button, width_of_buttons
+from ..toolkit.labels import make_label
 from ..toolkit.places import record
 from ..toolkit.textures import Textures
 from ..toolkit.words import cut_end, draw_dim, font, tip
@@ -55,7 +58,7 @@ class PresetGallery:
         self._draw_categories()
         presets = self._choose_presets()
         if not presets:
-            draw_dim(self._context, "No preset matches.")
+            draw_dim(self._context, translate("No preset matches."))
         imgui.begin_child("cards", ImVec2(0, 0), imgui.ChildFlags_.nav_flattened.value)
         gap = imgui.get_style().item_spacing.x
         room = imgui.get_content_region_avail().x
@@ -84,7 +87,7 @@ class PresetGallery:
             imgui.set_keyboard_focus_here()
             self._is_new = False
         flags = int(imgui.InputTextFlags_.enter_returns_true)
-        hint = f"Search {len(self._presets)} presets by name or tag"
+        hint = translate("Search {count} presets by name or tag", count=len(self._presets))
         entered, self._query = imgui.input_text_with_hint("##presets", hint, self._query, flags)
         record(self._context, "start search")
         leaves = imgui.is_item_active() and imgui.is_key_pressed(imgui.Key.down_arrow)
@@ -97,7 +100,7 @@ class PresetGallery:
         right = imgui.get_cursor_screen_pos().x + imgui.get_content_region_avail().x
         names = (_ALL, *dict.fromkeys(preset.category for preset in self._presets))
         for index, name in enumerate(names):
-            label = spell_out(name).capitalize()
+            label = raise_first(name_category(name))
             if index:
                 end = imgui.get_item_rect_max().x + imgui.get_style().item_spacing.x + width_of_buttons(label)
                 if end < right:
@@ -119,17 +122,26 @@ class PresetGallery:
         if not imgui.begin_popup_context_item(f"versions {preset.path}"):
             return
         versions = list_versions(preset.path)
-        imgui.text_disabled("Go back to a version" if versions else "There is no other version yet")
+        imgui.text_disabled(
+            translate("Go back to a version") if versions else translate("There is no other version yet")
+        )
         for version in versions:
             kept_at = time.strftime("%Y-%m-%d %H:%M", time.localtime(version.kept_at))
-            if imgui.menu_item(f"Version {version.number}, until {kept_at}", "", False)[0]:
+            label = translate("Version {number}, until {time}", number=version.number, time=kept_at)
+            if imgui.menu_item(make_label(label, f"version {version.number}"), "", False)[0]:
                 self._context.log.attempt(partial(self._restore, preset, version))
             record(self._context, f"version {version.number}")
         imgui.end_popup()
 
     def _restore(self, preset: PresetFacts, version: PresetVersion) -> None:
         restore_version(preset.path, version, UNRESTRICTED)
-        self._context.log.add(f"{preset.name} is version {version.number} again; what it was is a version now")
+        self._context.log.add(
+            translate(
+                "{name} is version {number} again; what it was is a version now",
+                name=preset.name,
+                number=version.number,
+            )
+        )
         query, category = self._query, self._category
         self.begin()
         self._query, self._category = query, category
@@ -157,7 +169,7 @@ class PresetGallery:
             else:
                 lines.add_image_rounded(texture, low, corner, ImVec2(0, 0), ImVec2(1, 1), 0xFFFFFFFF, rounding)
         with font(self._context, "text"):
-            name = cut_end(spell_out(preset.path.stem), width - 16 * scale)
+            name = cut_end(name_preset(preset.path.stem), width - 16 * scale)
         color = palette.error if preset.fault else palette.text
         lines.add_text(ImVec2(low.x + 8 * scale, corner.y + 5 * scale), u32(color), name)
         tip(preset.fault or "\n".join(filter(None, (preset.about.doc, ", ".join(preset.about.tags)))))

@@ -11,6 +11,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...authoring.preferences import Recent
 from ...errors import HalationError
+from ...language.translation import translate
 from ...media.pictures.thumbnail import load_thumbnail
 from ...resources.sandbox import UNRESTRICTED
 from ..theme.style import mix, u32, ui_scale, vec4
@@ -55,9 +56,9 @@ class RecentList:
         """Draw the list."""
         imgui.dummy(ImVec2(0, 4 * ui_scale()))
         with font(self._context, "bold"):
-            imgui.text_unformatted("Recent")
+            imgui.text_unformatted(translate("Recent"))
         if not self._context.store.current.recent:
-            draw_dim(self._context, "Files that you open appear here.")
+            draw_dim(self._context, translate("Files that you open appear here."))
         for index, recent in enumerate(self._context.store.current.recent):
             imgui.push_id(index)
             self._draw_row(index, recent)
@@ -76,7 +77,7 @@ class RecentList:
         imgui.set_next_item_allow_overlap()
         clicked, _ = imgui.selectable("##recent", False, 0, ImVec2(0, 2 * line + 8 * scale))
         record(self._context, f"recent {index}")
-        tip(str(path) if there else f"{path}\nThis file no longer exists.")
+        tip(str(path) if there else translate("{path}\nThis file no longer exists.", path=path))
         low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
         over = imgui.is_mouse_hovering_rect(low, high)
         after = imgui.get_cursor_pos()
@@ -88,7 +89,9 @@ class RecentList:
         imgui.text_colored(vec4(self._context.palette.dim if there else faint), cut_middle(str(path.parent), room))
         if over:
             imgui.set_cursor_pos(ImVec2(start.x + indent + room + 2 * scale, start.y + 6 * scale))
-            if quiet_button(self._context, icons.ICON_FA_XMARK, f"forget {index}", "Remove it from this list"):
+            if quiet_button(
+                self._context, icons.ICON_FA_XMARK, f"forget {index}", translate("Remove it from this list")
+            ):
                 self._context.store.forget(recent.path)
                 clicked = False
         imgui.set_cursor_pos(after)
@@ -97,7 +100,8 @@ class RecentList:
             self._context.documents.open_graph(path)
         elif clicked:
             self._context.log.add(
-                f"{path}: this file no longer exists; restore it, or remove it from the list", "warning"
+                translate("{path}: this file no longer exists; restore it, or remove it from the list", path=path),
+                "warning",
             )
 
     def _draw_picture(self, recent: Recent, corner: ImVec2) -> None:

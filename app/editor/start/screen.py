@@ -10,10 +10,12 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...authoring.recovery.recovery import RecoveredWork
+from ...language.translation import mark, translate, translate_plural
 from ..theme.style import ui_scale, vec4
 from ..toolkit.buttons import entry, main_button, quiet_button
 from ..toolkit.dialogs import backdrop, dialog, escape_pressed
 from ..toolkit.keys import chord, display_shortcut
+from ..toolkit.labels import make_label
 from ..toolkit.places import record
 from ..toolkit.words import cut_middle, draw_dim, draw_wrapped, font, tip
 from .gallery import PresetGallery
@@ -23,11 +25,14 @@ if TYPE_CHECKING:
     from .context import StartContext
 
 HINTS = (
-    "{node.add} adds a node. Drag from a socket to empty canvas to add one that fits.",
-    "Double-click a node to view it. {viewer.assign.1} assigns it to the key {viewer.recall.1}, which shows it again.",
-    "Drop pictures and graphs on the window.",
-    "{help.palette} finds every command, {help.shortcuts} shows all shortcuts.",
-    "Unsaved work comes back after a crash.",
+    mark("{node.add} adds a node. Drag from a socket to empty canvas to add one that fits."),
+    mark(
+        "Double-click a node to view it. {viewer.assign.1} assigns it to the key "
+        "{viewer.recall.1}, which shows it again."
+    ),
+    mark("Drop pictures and graphs on the window."),
+    mark("{help.palette} finds every command, {help.shortcuts} shows all shortcuts."),
+    mark("Unsaved work comes back after a crash."),
 )
 
 
@@ -83,28 +88,34 @@ class StartScreen:
     def _draw_title(self) -> None:
         with font(self._context, "bold", 30.0):
             imgui.text_unformatted("Halation")
-        draw_dim(self._context, "Screen-space effects, node by node")
+        draw_dim(self._context, translate("Screen-space effects, node by node"))
         imgui.dummy(ImVec2(0, 8 * ui_scale()))
         width = imgui.get_content_region_avail().x
-        if main_button(self._context, f"{icons.ICON_FA_PLUS}  New graph", "start new", width=width):
+        if main_button(self._context, f"{icons.ICON_FA_PLUS}  {translate('New graph')}", "start new", width=width):
             self._context.actions.run("file.new")
-        if imgui.button(f"{icons.ICON_FA_FOLDER_OPEN}  Open...", ImVec2(width, 0)):
+        if imgui.button(make_label(f"{icons.ICON_FA_FOLDER_OPEN}  {translate('Open...')}", "open"), ImVec2(width, 0)):
             self._context.actions.run("file.open")
         record(self._context, "start open")
-        if imgui.button(f"{icons.ICON_FA_FILM}  Open render...", ImVec2(width, 0)):
+        if imgui.button(
+            make_label(f"{icons.ICON_FA_FILM}  {translate('Open Render...')}", "open render"), ImVec2(width, 0)
+        ):
             self._context.actions.run("file.open_render")
         record(self._context, "start open render")
-        tip("Start a graph that reads the layers of a render, or a picture or sequence")
-        self._draw_menu("Tutorials", icons.ICON_FA_GRADUATION_CAP, "tutorial.", "Five minutes each, in the editor")
-        doc = "Twelve short lessons about the techniques of screen-space effects, each with a task"
-        self._draw_menu("Lessons", icons.ICON_FA_BOOK_OPEN, "lesson.", doc)
+        tip(translate("Start a graph that reads the layers of a render, or a picture or sequence"))
+        self._draw_menu(
+            mark("Tutorials"), icons.ICON_FA_GRADUATION_CAP, "tutorial.", translate("Five minutes each, in the editor")
+        )
+        doc = translate("Twelve short lessons about the techniques of screen-space effects, each with a task")
+        self._draw_menu(mark("Lessons"), icons.ICON_FA_BOOK_OPEN, "lesson.", doc)
         if not self._context.store.current.hint_seen:
             self._draw_hint()
 
     def _draw_menu(self, label: str, icon: str, prefix: str, doc: str) -> None:
         """Draw a button that lists the actions whose ids begin with `prefix`."""
         name = f"start {label.lower()}"
-        if imgui.button(f"{icon}  {label}", ImVec2(imgui.get_content_region_avail().x, 0)):
+        if imgui.button(
+            make_label(f"{icon}  {translate(label)}", label), ImVec2(imgui.get_content_region_avail().x, 0)
+        ):
             imgui.open_popup(name)
         record(self._context, name)
         tip(doc)
@@ -117,10 +128,15 @@ class StartScreen:
     def _draw_hint(self) -> None:
         imgui.dummy(ImVec2(0, 4 * ui_scale()))
         with font(self._context, "bold"):
-            imgui.text_unformatted("First time here?")
+            imgui.text_unformatted(translate("First time here?"))
         for line in HINTS:
-            draw_wrapped(self._context.palette.dim, self._fill_in_keys(line))
-        if quiet_button(self._context, f"{icons.ICON_FA_CHECK}  Got it", "hint seen", "Do not show this again"):
+            draw_wrapped(self._context.palette.dim, self._fill_in_keys(translate(line)))
+        if quiet_button(
+            self._context,
+            f"{icons.ICON_FA_CHECK}  {translate('Got it')}",
+            "hint seen",
+            translate("Do not show this again"),
+        ):
             self._context.log.attempt(lambda: self._context.store.change(hint_seen=True))
 
     def _fill_in_keys(self, line: str) -> str:
@@ -132,21 +148,21 @@ class StartScreen:
         if not recovered:
             return
         with font(self._context, "bold"):
-            imgui.text_colored(vec4(self._context.palette.warning), "Recover unsaved work")
+            imgui.text_colored(vec4(self._context.palette.warning), translate("Recover unsaved work"))
         for index, work in enumerate(recovered):
             when = strftime("%Y-%m-%d %H:%M", localtime(work.time))
-            nodes = "1 node" if work.nodes == 1 else f"{work.nodes} nodes"
-            if main_button(self._context, "Recover", f"recover {index}", enabled=not work.fault):
+            nodes = translate_plural("{count} node", "{count} nodes", work.nodes)
+            if main_button(self._context, translate("Recover"), f"recover {index}", enabled=not work.fault):
                 self._context.documents.recover(work)
                 self._recovered = None
             imgui.same_line()
-            if imgui.button(f"Discard##{index}"):
+            if imgui.button(make_label(translate("Discard"), f"discard {index}")):
                 self._context.log.attempt(work.discard)
                 self._recovered = None
             record(self._context, f"discard {index}")
             imgui.same_line()
             imgui.text_unformatted(cut_middle(work.title, 200 * ui_scale()))
-            tip(str(work.path or "never saved"))
+            tip(str(work.path or translate("never saved")))
             imgui.same_line()
             draw_dim(self._context, cut_middle(work.fault or f"{when}, {nodes}", imgui.get_content_region_avail().x))
         imgui.dummy(ImVec2(0, 6 * ui_scale()))

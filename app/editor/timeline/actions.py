@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import imgui
 
 from ...authoring.commands import SetFrameRange
+from ...language.translation import mark
 from ..shared.action import Action
 from .playback import LOOPS, Loop
 
@@ -103,9 +104,9 @@ def _loop(loop: Loop, label: str, doc: str) -> Action[TimelineContext]:
 
 _KEYED = frozenset({"timeline"})
 _LABELS = {
-    "loop": ("Loop", "After the last frame, start again at the first one."),
-    "once": ("Once", "Stop at the last frame."),
-    "ping-pong": ("Ping-Pong", "Play forwards and backwards in turn."),
+    "loop": (mark("Loop"), mark("After the last frame, start again at the first one.")),
+    "once": (mark("Once"), mark("Stop at the last frame.")),
+    "ping-pong": (mark("Ping-Pong"), mark("Play forwards and backwards in turn.")),
 }
 
 PLAYBACK: tuple[Action[TimelineContext], ...] = (

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 from imgui_bundle import imgui
 
+from ...language.translation import translate
 from ..theme.style import mix, u32, ui_scale
 from ..toolkit.places import Rect
 from ..toolkit.plane import Plane, View, ticks
@@ -229,9 +230,9 @@ def _tell(context: TimelineContext, plane: Plane) -> None:
     frame = math.floor(plane.frame(imgui.get_mouse_pos().x) + 0.5)
     session = context.session
     seconds = (frame - session.time.frames[0]) / session.root.settings.rate
-    facts = [f"frame {frame}, {seconds:.2f} s"]
+    facts = [translate("frame {frame}, {seconds:.2f} s", frame=frame, seconds=seconds)]
     if frame in session.time.list_key_frames():
-        facts.append("a key")
+        facts.append(translate("a key"))
     if frame in context.preview.frames:
-        facts.append("ready")
+        facts.append(translate("ready"))
     tip(" · ".join(facts))

@@ -8,6 +8,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...authoring.commands import SetFrameRange, SetFrameRate
+from ...language.translation import translate
 from ..fields.fields import Edit, Fields
 from ..fields.number_field import number_field
 from ..fields.numbers import RATE, near
@@ -96,12 +97,12 @@ class Timeline:
         tool(self._context, icons.ICON_FA_FORWARD_FAST, "time.last")
         imgui.same_line()
         action = self._context.actions[f"time.{timeline.loop.replace('-', '_')}"]
-        doc = f"{tip_of(self._context, action)}\nClick to change it"
+        doc = f"{tip_of(self._context, action)}\n{translate('Click to change it')}"
         if quiet_button(self._context, _LOOPS[timeline.loop], "button time.loops", doc):
             timeline.next_loop()
 
     def _frame(self, width: float) -> None:
-        edit = self._number("timeline frame", self._context.session.time.frame, width, "The current frame")
+        edit = self._number("timeline frame", self._context.session.time.frame, width, translate("The current frame"))
         if edit and isinstance(edit.value, int | float):
             self._context.timeline.stop()
             self._context.session.time.seek(edit.value)
@@ -111,10 +112,13 @@ class Timeline:
         session = self._context.session
         first, last = session.time.frames
         stated = session.root.settings.frames is not None
-        automatic = ": from the sequences that it reads, or from its keys. Type a number to set it"
-        doc = "frame of the graph" + ("" if stated else automatic)
-        for name, value, gap in (("first", first, 3.0), ("last", last, 8.0)):
-            edit = self._number(f"timeline {name}", value, 52.0 * scale, f"{name.title()} {doc}")
+        automatic = translate("From the sequences that it reads, or from its keys. Type a number to set it")
+        for name, doc, value, gap in (
+            ("first", translate("First frame of the graph"), first, 3.0),
+            ("last", translate("Last frame of the graph"), last, 8.0),
+        ):
+            doc = doc if stated else f"{doc}\n{automatic}"
+            edit = self._number(f"timeline {name}", value, 52.0 * scale, doc)
             imgui.same_line(0.0, gap * scale)
             if edit and isinstance(edit.value, int | float):
                 at, merge = int(edit.value), edit.merge
@@ -123,10 +127,16 @@ class Timeline:
                     lambda low=low, high=high, merge=merge: session.apply(SetFrameRange(low, high, merge=merge))
                 )
         rate = number_field(
-            self._fields, "timeline rate", session.root.settings.rate, RATE, 76.0 * scale, suffix="fps", plain=True
+            self._fields,
+            "timeline rate",
+            session.root.settings.rate,
+            RATE,
+            76.0 * scale,
+            suffix=translate("fps", "unit"),
+            plain=True,
         )
         self._context.places["field timeline rate"] = item_rect()
-        tip("Frames per second of the graph")
+        tip(translate("Frames per second of the graph"))
         if rate and isinstance(rate.value, int | float):
             value, merge = float(rate.value), rate.merge
             self._context.log.attempt(lambda: session.apply(SetFrameRate(value, merge=merge)))
@@ -144,17 +154,24 @@ class Timeline:
         lead = preview.lead
         if lead:
             kind, computed, total = lead
-            text = f"pre-roll {computed} of {total}" if kind == "pre-roll" else f"planning {computed} of {total} frames"
+            text = translate("planning {done} of {total} frames", done=computed, total=total)
+            if kind == "pre-roll":
+                text = translate("pre-roll {done} of {total}", done=computed, total=total)
             color = palette.accent
         elif not text:
             first, last = self._context.session.time.frames
             ready = sum(first <= frame <= last for frame in preview.frames)
             text, color = timeline.report, palette.dim
             if last > first and not text:
-                text = f"{ready} of {last - first + 1} ready, {preview.frames_bytes / 2**20:.0f} MiB"
+                text = translate(
+                    "{count} of {total} ready, {size:.0f} MiB",
+                    count=ready,
+                    total=last - first + 1,
+                    size=preview.frames_bytes / 2**20,
+                )
         with font(self._context, "text", SMALL):
             write(rect, text, color)
         self._context.places["timeline words"] = rect
         imgui.set_cursor_screen_pos(rect[:2])
         imgui.dummy((max(rect[2] - rect[0], 1.0), rect[3] - rect[1]))
-        tip("Cached frames play at once. They use up to half of the memory budget.")
+        tip(translate("Cached frames play at once. They use up to half of the memory budget."))

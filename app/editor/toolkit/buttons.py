@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Protocol
 
 from imgui_bundle import ImVec2, imgui
 
+from ...language.translation import translate
 from ..theme.palette import RGB
 from ..theme.style import mix, u32, ui_scale, vec4
 from .keys import display_shortcut
+from .labels import make_label
 from .places import WidgetSurface, item_rect, record
 from .words import tip
 
@@ -41,7 +43,7 @@ def quiet_button(
     padding = imgui.get_style().frame_padding
     imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0.0 if square else padding.x, padding.y))
     imgui.begin_disabled(not enabled)
-    clicked = imgui.button(f"{label}##{name}", ImVec2(width or (imgui.get_frame_height() if square else 0.0), 0.0))
+    clicked = imgui.button(make_label(label, name), ImVec2(width or (imgui.get_frame_height() if square else 0.0), 0.0))
     imgui.end_disabled()
     imgui.pop_style_var()
     imgui.pop_style_color(2)
@@ -61,6 +63,12 @@ def width_of_buttons(*labels: str, gap: float | None = None) -> float:
     return sum(widths) + between * (len(labels) - 1)
 
 
+def measure_buttons(*labels: str, least: float = 96.0) -> float:
+    """The width in pixels of buttons that are as wide as the widest of them; at least `least` units."""
+    widest = max(imgui.calc_text_size(label).x for label in labels)
+    return max(widest + 4 * imgui.get_style().frame_padding.x, least * ui_scale())
+
+
 def align_right(*labels: str) -> None:
     """Move the cursor so that buttons with these labels end at the right border, on the same line if they fit."""
     width = width_of_buttons(*labels)
@@ -78,7 +86,7 @@ def main_button(surface: WidgetSurface, label: str, name: str, *, width: float =
         imgui.push_style_color(color, vec4(mix(palette.accent, palette.text, lit)))
     imgui.push_style_color(imgui.Col_.text, vec4(palette.on_accent))
     imgui.begin_disabled(not enabled)
-    clicked = imgui.button(f"{label}##{name}", ImVec2(width, 0))
+    clicked = imgui.button(make_label(label, name), ImVec2(width, 0))
     imgui.end_disabled()
     imgui.pop_style_color(4)
     record(surface, name)
@@ -87,9 +95,9 @@ def main_button(surface: WidgetSurface, label: str, name: str, *, width: float =
 
 def close_button(surface: WidgetSurface, name: str) -> bool:
     """The button at the lower right that ends a dialog."""
-    width = 96 * ui_scale()
+    width = measure_buttons(translate("Close"))
     imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x - width)
-    clicked = main_button(surface, "Close", name, width=width)
+    clicked = main_button(surface, translate("Close"), name, width=width)
     imgui.set_item_default_focus()
     return clicked
 
@@ -128,9 +136,9 @@ def dropdown(
 def tip_of(surface: ActionSurface, action: ListedAction) -> str:
     """The text of an action's tooltip."""
     shortcut = surface.actions.shortcut(action.id)
-    title = action.label.removesuffix("...")
+    title = translate(action.label).removesuffix("...")
     title = f"{title} ({display_shortcut(shortcut)})" if shortcut else title
-    return f"{title}\n{action.doc}" if action.doc else title
+    return f"{title}\n{translate(action.doc)}" if action.doc else title
 
 
 def tool(surface: ActionSurface, icon: str, id: str) -> None:
@@ -146,11 +154,12 @@ def tool(surface: ActionSurface, icon: str, id: str) -> None:
 def entry(surface: ActionSurface, action: ListedAction, icon: str = "") -> None:
     """Draw an action as an entry of the open menu."""
     checked = surface.actions.is_checked(action)
-    label = f"{icon}  {action.label}" if icon else action.label
+    title = translate(action.label)
+    label = f"{icon}  {title}" if icon else title
     shortcut = display_shortcut(surface.actions.shortcut(action.id))
-    clicked, _ = imgui.menu_item(f"{label}##{action.id}", shortcut, checked, surface.actions.is_enabled(action))
+    clicked, _ = imgui.menu_item(make_label(label, action.id), shortcut, checked, surface.actions.is_enabled(action))
     record(surface, f"menu {action.id}")
-    tip(action.doc)
+    tip(translate(action.doc))
     if clicked:
         surface.actions.run(action.id)
 

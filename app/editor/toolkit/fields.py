@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 from imgui_bundle import imgui
 
 from ..theme.palette import Palette
 from ..theme.style import mix, u32, ui_scale, vec4
+from .labels import make_label
 from .places import Rect, WidgetSurface, record
 from .words import tip
 
@@ -38,23 +39,37 @@ def draw_arrow(palette: Palette, rect: Rect) -> None:
     )
 
 
+def measure_labels(texts: Iterable[str], least: float) -> float:
+    """The width of a column that holds these names, in units; at least `least`."""
+    widths = (imgui.calc_text_size(text).x + 2 * imgui.get_style().item_spacing.x for text in texts)
+    return max(max(widths, default=0.0) / ui_scale(), least)
+
+
 def label(text: str, width: float) -> None:
-    """Draw a name at the left of a field, which begins `width` units further right."""
+    """Draw a name at the left of a field, which begins `width` units further right, or behind a longer name."""
     left = imgui.get_cursor_pos_x()
     imgui.align_text_to_frame_padding()
     imgui.text_unformatted(text)
     imgui.same_line()
-    imgui.set_cursor_pos_x(left + width * ui_scale())
+    imgui.set_cursor_pos_x(max(left + width * ui_scale(), imgui.get_cursor_pos_x()))
 
 
-def combo(surface: WidgetSurface, name: str, current: str, choices: Sequence[str], width: float = -1.0) -> str:
-    """Draw a list of texts; returns what was chosen in this frame, or ""."""
+def combo(
+    surface: WidgetSurface,
+    name: str,
+    current: str,
+    choices: Sequence[str],
+    width: float = -1.0,
+    *,
+    show: Callable[[str], str] = str,
+) -> str:
+    """Draw a list of texts, each as `show` writes it; returns what was chosen in this frame, or ""."""
     imgui.set_next_item_width(width)
     chosen = ""
-    opened = imgui.begin_combo(f"##{name}", current, int(imgui.ComboFlags_.no_arrow_button))
+    opened = imgui.begin_combo(f"##{name}", show(current), int(imgui.ComboFlags_.no_arrow_button))
     if opened:
         for choice in choices:
-            if imgui.selectable(choice, choice == current)[0]:
+            if imgui.selectable(make_label(show(choice), choice), choice == current)[0]:
                 chosen = choice
             record(surface, f"{name} {choice}")
         imgui.end_combo()

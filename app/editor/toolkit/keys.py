@@ -11,6 +11,7 @@ from types import MappingProxyType
 from imgui_bundle import imgui
 
 from ...errors import UsageError
+from ...language.translation import mark, translate
 
 _MODIFIERS: Mapping[str, int] = MappingProxyType(
     {
@@ -20,6 +21,28 @@ _MODIFIERS: Mapping[str, int] = MappingProxyType(
         "Super": int(imgui.Key.mod_super),
     }
 )
+_NAMES = MappingProxyType(
+    {
+        "Ctrl": mark("Ctrl", "key"),
+        "Shift": mark("Shift", "key"),
+        "Space": mark("Space", "key"),
+        "Enter": mark("Enter", "key"),
+        "Escape": mark("Escape", "key"),
+        "Backspace": mark("Backspace", "key"),
+        "Delete": mark("Delete", "key"),
+        "Insert": mark("Insert", "key"),
+        "Home": mark("Home", "key"),
+        "End": mark("End", "key"),
+        "Left": mark("Left", "key"),
+        "Right": mark("Right", "key"),
+        "Up": mark("Up", "key"),
+        "Down": mark("Down", "key"),
+        "Page Up": mark("Page Up", "key"),
+        "Page Down": mark("Page Down", "key"),
+    }
+)
+"""Keys that keyboards of other languages name otherwise."""
+
 _SIGNS = MappingProxyType(
     {
         "Comma": ",",
@@ -49,7 +72,7 @@ def chord(text: str) -> int:
     """The key chord that `text` names. Raises UsageError for an unknown key."""
     *modifiers, key = text.split("+")
     if key not in _keys() or not set(modifiers) <= _MODIFIERS.keys() or len(set(modifiers)) != len(modifiers):
-        raise UsageError(f"'{text}' is no shortcut; write it like 'Ctrl+Shift+S' or 'F5'")
+        raise UsageError(translate("'{text}' is no shortcut; write it like 'Ctrl+Shift+S' or 'F5'", text=text))
     return _keys()[key] | sum(_MODIFIERS[name] for name in modifiers)
 
 
@@ -62,7 +85,8 @@ def text(chord: int) -> str:
 def display_shortcut(text: str) -> str:
     """A shortcut as shown to the user: `Ctrl+,` for `Ctrl+Comma`, and Cmd for Ctrl on macOS."""
     control = "Cmd" if sys.platform == "darwin" else "Ctrl"
-    return "+".join(control if part == "Ctrl" else _SIGNS.get(part, part) for part in text.split("+"))
+    parts = (control if part == "Ctrl" else _SIGNS.get(part, part) for part in text.split("+"))
+    return "+".join(translate(_NAMES[part], "key") if part in _NAMES else part for part in parts)
 
 
 def is_enter_pressed(repeats: bool = True) -> bool:

@@ -5,12 +5,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+_NO_SPAN = 1e-9
+"""A span of values that is 0 but for rounding: it has no share."""
+
 Rect = tuple[float, float, float, float]
 """Left, top, right, bottom in pixels."""
 
 _FRAMES = 0.5, 1e6
 _VALUES = 1e-6, 1e9
-"""The least and the largest visible extent of each axis."""
+"""The least and the largest span of a view: half a frame to the longest list of frames; what floats of 32 bits tell."""
 
 _BESIDE, _ABOVE = 0.05, 0.14
 """The margins around what is fitted into view, as fractions of it."""
@@ -121,5 +124,5 @@ def _spread(low: float, high: float, about: float, factor: float, limits: tuple[
 
 
 def _roomy(low: float, high: float, share: float, least: float) -> tuple[float, float]:
-    room = (high - low) * share if high - low > 1e-9 else least
+    room = (high - low) * share if high - low > _NO_SPAN else least
     return low - room, high + room

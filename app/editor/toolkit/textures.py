@@ -11,6 +11,7 @@ from imgui_bundle import hello_imgui, imgui
 from ...color.transforms import Array
 
 _MOST = 300
+"""Small pictures on the device: those of all nodes in the menu, and of what was shown last. Chosen by judgement."""
 
 
 class Textures:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from ...authoring.background.cache import BackgroundCache
 from ...errors import HalationError
+from ...language.translation import translate
 from ...resources.sandbox import UNRESTRICTED, Sandbox
 
 if TYPE_CHECKING:
@@ -61,7 +62,7 @@ class FileThumbnails:
         except HalationError as fault:
             return str(fault)
         except Exception as fault:
-            return f"{path}: cannot be shown ({fault})"
+            return translate("{path}: cannot be shown ({fault})", path=path, fault=fault)
         with contextlib.suppress(HalationError, OSError):
             self._folder.mkdir(parents=True, exist_ok=True)
             save_thumbnail(cached_file, pixels, sandbox=UNRESTRICTED)

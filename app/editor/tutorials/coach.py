@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 from imgui_bundle import ImVec2, imgui
@@ -11,9 +11,10 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...authoring.edits.ports import is_viewable
 from ...graph import Port
+from ...language.translation import translate
 from ..shared.window_commands import PanelTitle
 from ..theme.style import u32, ui_scale
-from ..toolkit.buttons import quiet_button
+from ..toolkit.buttons import quiet_button, width_of_buttons
 from ..toolkit.keys import display_shortcut
 from ..toolkit.places import Rect
 from ..toolkit.words import SMALL, draw_dim, draw_wrapped, font
@@ -96,12 +97,14 @@ class Coach:
         to choose something in them.
         """
         scale, progress = ui_scale(), self._context.progress
-        sentence = self._fill_in_keys(step.sentence)
-        inner = (_WIDTH - 2 * _PADDING[0]) * scale
+        sentence = self._fill_in_keys(translate(step.sentence))
+        buttons = self._label_buttons(lesson, step)
+        inner = max((_WIDTH - 2 * _PADDING[0]) * scale, width_of_buttons(*buttons.values()))
+        wide = inner + 2 * _PADDING[0] * scale
         high = imgui.calc_text_size(sentence, False, inner).y + 2 * _PADDING[1] * scale + imgui.get_frame_height()
         high += 1.2 * SMALL * scale + 3 * imgui.get_style().item_spacing.y + 2.0 * scale
-        imgui.set_next_window_pos(place_card(rect, (_WIDTH * scale, high), _find_area(), scale))
-        imgui.set_next_window_size(ImVec2(_WIDTH * scale, high))
+        imgui.set_next_window_pos(place_card(rect, (wide, high), _find_area(), scale))
+        imgui.set_next_window_size(ImVec2(wide, high))
         imgui.push_style_color(imgui.Col_.border, u32(self._context.palette.accent))
         imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(_PADDING[0] * scale, _PADDING[1] * scale))
         imgui.push_style_var(imgui.StyleVar_.window_rounding, 8.0 * scale)
@@ -109,33 +112,56 @@ class Coach:
         if not self._context.dialogs.any and not imgui.is_popup_open("", int(imgui.PopupFlags_.any_popup)):
             imgui.internal.bring_window_to_display_front(imgui.internal.get_current_window())
         with font(self._context, "text", SMALL):
-            draw_dim(self._context, f"{lesson.title}: {progress.index + 1} of {len(lesson.steps)}")
+            draw_dim(
+                self._context,
+                translate(
+                    "{title}: {number} of {count}",
+                    title=translate(lesson.title),
+                    number=progress.index + 1,
+                    count=len(lesson.steps),
+                ),
+            )
         draw_wrapped(self._context.palette.text, sentence)
         imgui.dummy(ImVec2(0.0, 2.0 * scale))
-        is_last = progress.index == len(lesson.steps) - 1
-        if progress.index and quiet_button(self._context, f"{icons.ICON_FA_ARROW_LEFT}  Back", "tutorial back", ""):
-            progress.go(-1)
-        if progress.index:
-            imgui.same_line()
-        is_read = step.is_done is None or progress.went_back
-        label = "Finish" if is_last else f"{icons.ICON_FA_ARROW_RIGHT}  {'Next' if is_read else 'Skip'}"
-        if quiet_button(self._context, label, "tutorial next", "", lit=is_read):
-            self._go_on(lesson)
-        if step.solution:
-            imgui.same_line()
-            if quiet_button(
-                self._context, f"{icons.ICON_FA_WAND_MAGIC_SPARKLES}  Do it", "tutorial solve", "Do it for me"
-            ):
-                self._context.log.attempt(lambda: self._solve(step))
-        if not is_last:
-            imgui.same_line()
-            if quiet_button(self._context, f"{icons.ICON_FA_XMARK}  End", "tutorial end", "Close the tutorial"):
-                progress.begin(None)
+        self._draw_buttons(lesson, step, buttons)
         corner = imgui.get_window_pos()
-        self._context.places["tutorial"] = (corner.x, corner.y, corner.x + _WIDTH * scale, corner.y + high)
+        self._context.places["tutorial"] = (corner.x, corner.y, corner.x + wide, corner.y + high)
         imgui.end()
         imgui.pop_style_var(2)
         imgui.pop_style_color()
+
+    def _label_buttons(self, lesson: Lesson, step: Step) -> dict[str, str]:
+        """The labels of the buttons of a step, from left to right, by what they do."""
+        labels = {}
+        if self._context.progress.index:
+            labels["back"] = f"{icons.ICON_FA_ARROW_LEFT}  {translate('Back')}"
+        is_last = self._context.progress.index == len(lesson.steps) - 1
+        following = translate("Next") if self._is_read(step) else translate("Skip")
+        labels["next"] = translate("Finish") if is_last else f"{icons.ICON_FA_ARROW_RIGHT}  {following}"
+        if step.solution:
+            labels["solve"] = f"{icons.ICON_FA_WAND_MAGIC_SPARKLES}  {translate('Do it')}"
+        if not is_last:
+            labels["end"] = f"{icons.ICON_FA_XMARK}  {translate('End')}"
+        return labels
+
+    def _is_read(self, step: Step) -> bool:
+        return step.is_done is None or self._context.progress.went_back
+
+    def _draw_buttons(self, lesson: Lesson, step: Step, labels: Mapping[str, str]) -> None:
+        progress = self._context.progress
+        docs = {"solve": translate("Do it for me"), "end": translate("Close the tutorial")}
+        acts: dict[str, Callable[[], object]] = {
+            "back": lambda: progress.go(-1),
+            "next": lambda: self._go_on(lesson),
+            "solve": lambda: self._context.log.attempt(lambda: self._solve(step)),
+            "end": lambda: progress.begin(None),
+        }
+        lit = self._is_read(step)
+        for name, label in labels.items():
+            if name != next(iter(labels)):
+                imgui.same_line()
+            if quiet_button(self._context, label, f"tutorial {name}", docs.get(name, ""), lit=lit and name == "next"):
+                acts[name]()
 
     def _fill_in_keys(self, sentence: str) -> str:
         """The sentence with the current shortcuts of the actions that it names in braces."""

@@ -5,20 +5,22 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ...authoring.commands import AssignViewer
+from ...language.translation import mark
 from ..shared.action import Action
 from .state import BACKGROUNDS, PROXIES, SCOPES, Background, Channels, Compare
+from .wanted import has_overscan
 
 if TYPE_CHECKING:
     from .context import ViewerContext
 
 _CHANNELS: tuple[tuple[Channels, str, str], ...] = (
-    ("color", "Color", "C"),
-    ("red", "Red", "R"),
-    ("green", "Green", "G"),
-    ("blue", "Blue", "B"),
-    ("alpha", "Alpha", "A"),
-    ("luminance", "Luminance", "L"),
-    ("false color", "False Color", "Shift+L"),
+    ("color", mark("Color"), "C"),
+    ("red", mark("Red"), "R"),
+    ("green", mark("Green"), "G"),
+    ("blue", mark("Blue"), "B"),
+    ("alpha", mark("Alpha"), "A"),
+    ("luminance", mark("Luminance"), "L"),
+    ("false color", mark("False Color"), "Shift+L"),
 )
 _COMPARES: tuple[tuple[Compare, str, str], ...] = (
     ("wipe", "Wipe", "W"),
@@ -166,6 +168,28 @@ VIEWER: tuple[Action[ViewerContext], ...] = (
         contexts=_SHOWN,
         checked=_is("zoom", 1.0),
         doc="Show one pixel of the picture as one pixel of the screen.",
+    ),
+    Action(
+        "viewer.unsqueeze",
+        "Pixel Aspect Ratio",
+        _flip("unsqueezes"),
+        "Viewer",
+        "",
+        "viewer",
+        lambda context: context.viewer.pixel_aspect != 1.0,
+        _is("unsqueezes"),
+        doc="Show pixels in their shape, as the file says: an anamorphic picture as wide as it is meant.",
+    ),
+    Action(
+        "viewer.overscan",
+        "Show Beyond the Frame",
+        _flip("overscan"),
+        "Viewer",
+        "Shift+O",
+        "viewer",
+        has_overscan,
+        _is("overscan"),
+        doc="Show, dimmed, what the picture has outside of its frame. Only a project with an overscan has it.",
     ),
     Action("viewer.nearer", "Zoom In", _zoom(2.0), "Viewer", "Equal", "viewer"),
     Action("viewer.farther", "Zoom Out", _zoom(0.5), "Viewer", "Minus", "viewer"),

@@ -17,6 +17,9 @@ from .strokes import BLACK, WHITE, around
 if TYPE_CHECKING:
     from .context import ViewerContext
 
+_BRIGHT = 0.8
+"""The length of a color from which on black letters can be read on it better than white ones. Chosen by eye."""
+
 _COLORS: dict[str, RGB] = {"x": (0.95, 0.30, 0.33), "y": (0.42, 0.78, 0.25), "z": (0.30, 0.56, 0.98)}
 _ARM, _MARGIN, _KNOB = 30.0, 16.0, 7.5
 """Lengths at UI scale 1."""
@@ -44,6 +47,6 @@ def draw_axes(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> 
         lines.add_line((x, y), end, u32(color), 2.5 * scale)
         lines.add_circle_filled(end, _KNOB * scale, u32(color))
         size = imgui.calc_text_size(name.upper())
-        ink = BLACK if math.hypot(*color) > 0.8 else WHITE
+        ink = BLACK if math.hypot(*color) > _BRIGHT else WHITE
         lines.add_text((round(end[0] - size.x / 2), round(end[1] - size.y / 2)), u32(ink), name.upper())
         context.places[f"axis {name}"] = around(end, _KNOB * scale)

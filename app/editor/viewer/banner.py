@@ -8,15 +8,13 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...authoring.flipbook import SIDES
+from ...language.translation import translate
 from ..theme.style import mix, u32, ui_scale, vec4
 from ..toolkit.buttons import quiet_button, width_of_buttons
 from ..toolkit.words import cut_middle, draw_dim, font, tip
 
 if TYPE_CHECKING:
     from .context import ViewerContext
-
-_WITH = f"{icons.ICON_FA_TABLE_COLUMNS}  Compare with..."
-_BACK = f"{icons.ICON_FA_XMARK}  Back to the graph"
 
 
 def draw_banner(context: ViewerContext) -> None:
@@ -34,8 +32,10 @@ def draw_banner(context: ViewerContext) -> None:
     imgui.text_colored(vec4(palette.accent), f"{icons.ICON_FA_FILM} ")
     imgui.same_line(0.0, 2 * scale)
     with font(context, "bold"):
-        imgui.text_unformatted("Flipbook")
-    buttons = (_BACK,) if len(book.strips) > 1 else (_WITH, _BACK)
+        imgui.text_unformatted(translate("Flipbook"))
+    compare = f"{icons.ICON_FA_TABLE_COLUMNS}  {translate('Compare with...')}"
+    back = f"{icons.ICON_FA_XMARK}  {translate('Back to the graph')}"
+    buttons = (back,) if len(book.strips) > 1 else (compare, back)
     room = (inner.max.x - imgui.get_cursor_screen_pos().x - width_of_buttons(*buttons) - 130 * scale) / len(book.strips)
     colors = {"A": palette.accent, "B": palette.good}
     same = len({strip.name for strip in book.strips}) < len(book.strips)
@@ -49,14 +49,14 @@ def draw_banner(context: ViewerContext) -> None:
         tip(str(strip.path))
         if strip.export is not None and strip.export.state in ("running", "waiting"):
             imgui.same_line(0.0, 6 * scale)
-            draw_dim(context, f"{strip.export.done} of {strip.export.total}")
+            draw_dim(context, translate("{done} of {total}", done=strip.export.done, total=strip.export.total))
     imgui.same_line(0.0, 0.0)
     imgui.set_cursor_screen_pos((inner.max.x - width_of_buttons(*buttons) - 4 * scale, start.y))
     if len(book.strips) == 1:
-        if quiet_button(context, _WITH, "compare flipbook", "Play other pictures beside these"):
+        if quiet_button(context, compare, "compare flipbook", translate("Play other pictures beside these")):
             context.actions.run("flipbook.compare")
         imgui.same_line()
-    doc = "The viewer and the timeline show the document again"
-    if quiet_button(context, _BACK, "close flipbook", doc):
+    doc = translate("The viewer and the timeline show the document again")
+    if quiet_button(context, back, "close flipbook", doc):
         context.actions.run("flipbook.close")
     imgui.set_cursor_screen_pos((start.x, bottom + 3 * scale))

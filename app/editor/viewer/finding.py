@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from ...authoring.edits.element_id import ElementId
 from ...graph import Port
+from ...language.translation import translate
 from ...renderer import NonfinitePixel, RenderRequest, find_first_nonfinite
 
 if TYPE_CHECKING:
@@ -52,7 +53,7 @@ class InvalidPixelSearch:
             if bad_pixel is not None or time.perf_counter() - started > BUDGET:
                 break
         else:
-            self._context.log.add("no NaN or infinity up to here")
+            self._context.log.add(translate("no NaN or infinity up to here"))
             self._context.viewer.finding = False
         if bad_pixel is not None:
             self._context.viewer.finding = False
@@ -76,7 +77,14 @@ def _show(context: ViewerContext, bad_pixel: NonfinitePixel) -> None:
     """Select the node, and mark the pixel."""
     x, y = bad_pixel.pixel
     context.log.add(
-        f"{bad_pixel.path} is the first node with {bad_pixel.value} (pixel {x}, {y} of its output)", "warning"
+        translate(
+            "{path} is the first node with {value} (pixel {x}, {y} of its output)",
+            path=bad_pixel.path,
+            value=bad_pixel.value,
+            x=x,
+            y=y,
+        ),
+        "warning",
     )
     *place, name = bad_pixel.path.split("/")
     context.log.attempt(lambda: context.session.go(tuple(place)))

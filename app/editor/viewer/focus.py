@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from halation.nodes import Node
 
 from ...graph import Port
+from ...language.translation import translate
 
 if TYPE_CHECKING:
     from ...authoring.session import Session
@@ -54,4 +55,10 @@ def pick_focus(context: ViewerContext) -> None:
 
 def distance_in_words(depth: float | None) -> str:
     """A depth as the text of a label."""
-    return "depth unknown" if depth is None else "nothing here" if depth >= 1e9 else f"depth {depth:.4g}"
+    return (
+        translate("depth unknown")
+        if depth is None
+        else translate("nothing here")
+        if depth >= 1e9
+        else translate("depth {depth:.4g}", depth=depth)
+    )

@@ -25,7 +25,8 @@ class Sight:
     """A picture seen through a panel.
 
     `origin` is the panel's left top on the screen, `density` how many panel pixels a screen unit has (2 on some
-    displays of laptops). `panel`, `zoom` and `pan` are panel pixels; `picture` is the size at scale 1.
+    displays of laptops). `panel`, `zoom` and `pan` are panel pixels; `picture` is the size at scale 1, whose pixels are
+    shown `stretch` times as wide as high.
     """
 
     origin: Point
@@ -34,18 +35,34 @@ class Sight:
     zoom: float = 1.0
     pan: Point = (0.0, 0.0)
     density: float = 1.0
+    stretch: float = 1.0
 
     @classmethod
-    def of(cls, origin: Point, panel: Pixels, picture: Pixels, zoom: float, pan: Point, density: float = 1.0) -> Sight:
+    def of(
+        cls,
+        origin: Point,
+        panel: Pixels,
+        picture: Pixels,
+        zoom: float,
+        pan: Point,
+        density: float = 1.0,
+        stretch: float = 1.0,
+    ) -> Sight:
         """The sight of a picture; with a zoom of 0 it fits the panel."""
         if zoom <= 0.0:
-            zoom, pan = look.fit_zoom(panel, picture), (0.0, 0.0)
-        return cls(origin, panel, picture, zoom, pan, density)
+            zoom, pan = look.fit_zoom(panel, picture, stretch), (0.0, 0.0)
+        return cls(origin, panel, picture, zoom, pan, density, stretch)
 
     @property
     def look(self) -> Look:
         """The placement of the picture, as the display takes it."""
-        return Look(zoom=self.zoom, pan=self.pan)
+        return Look(zoom=self.zoom, stretch=self.stretch, pan=self.pan)
+
+    @property
+    def pixel_size(self) -> Point:
+        """Screen units of a pixel of the picture, across and down."""
+        across, down = self.look.pixel_size
+        return across / self.density, down / self.density
 
     def pixel(self, at: Point) -> Point:
         """The picture position (pixels at full size, fractions kept) under a screen point."""
@@ -92,7 +109,7 @@ class Sight:
         x, y = (
             min(max(moved[i], -limit), limit)
             for i, limit in enumerate(
-                max((self.panel[i] + self.picture[i] * self.zoom) / 2 - 32.0, 0.0) for i in (0, 1)
+                max((self.panel[i] + self.picture[i] * self.look.pixel_size[i]) / 2 - 32.0, 0.0) for i in (0, 1)
             )
         )
         return replace(self, pan=(x, y))

@@ -49,7 +49,7 @@ def _preview(context: ViewerContext, gizmo: Gizmo) -> Gizmo:
 def _draw_outline(lines: imgui.ImDrawList, sight: Sight, outline: GizmoOutline) -> None:
     points = [sight.screen(point) for point in outline.points]
     if outline.radius > 0.0:
-        draw_dashed_circle(lines, points[0], outline.radius * sight.zoom / sight.density, WHITE)
+        draw_dashed_circle(lines, points[0], outline.radius * sight.pixel_size[1], WHITE, sight.stretch)
     elif len(points) > 1:
         draw_path(lines, points, WHITE, closed=outline.is_closed)
 

@@ -14,6 +14,7 @@ from .geometry import Point, Sight
 from .holding import HandleTarget, MouseHold, aim
 from .lights import add_light, can_add, make_merge_token, place_light, turn_spot
 from .orbit import Orbit, move_camera, scene_at
+from .painting import cancel_stroke
 from .splines import insert_on_curve
 
 if TYPE_CHECKING:
@@ -105,6 +106,7 @@ class ViewerInput:
         if self._hold.token and imgui.is_key_pressed(imgui.Key.escape, False):
             self._context.session.abandon(self._hold.token)
             self._context.viewer.guides, self._context.viewer.deferred = (), None
+            cancel_stroke(self._context)
             self._hold = None
             return
         io = imgui.get_io()
@@ -155,6 +157,8 @@ class ViewerInput:
             imgui.set_mouse_cursor(_CURSORS[target.part])
         elif target.kind in ("handle", "track", "sun") or target.lamp or target.spline:
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
+        elif target.kind in ("paint", "brush copy"):
+            imgui.set_mouse_cursor(imgui.MouseCursor_.none if target.kind == "paint" else imgui.MouseCursor_.hand)
         elif target.kind == "matte" or (target.kind in ("pan", "orbit") and self._hold and self._hold.moved):
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
         elif target.grip in _CURSORS:

@@ -8,6 +8,7 @@ from ..shared.action import Action
 from .focus import find_focus_port, pick_focus
 from .lights import can_remove, remove_chosen_light
 from .orbit import frame_scene
+from .painting import can_paint, paints, scale_brush, toggle_brush
 from .splines import can_draw, can_remove_point, remove_point, toggle_pen
 
 if TYPE_CHECKING:
@@ -98,6 +99,38 @@ HANDLES: tuple[Action[ViewerContext], ...] = (
         doc="Click on the picture to set corners of a new shape of the selected node, drag to set smooth points, and "
         "click the first point to close it. Afterwards points and tangents can be dragged; Alt pulls tangents out of a "
         "point, or moves one tangent alone. A double click on the line adds a point.",
+    ),
+    Action(
+        "viewer.paint",
+        "Paint",
+        toggle_brush,
+        "Viewer/Handles",
+        "Shift+N",
+        "viewer",
+        can_paint,
+        paints,
+        doc="Drag on the picture to paint a stroke of the selected node. Drag with Shift for the size of the brush; "
+        "click with Alt on what a clone copies. Space and drag pans the picture.",
+    ),
+    Action(
+        "viewer.larger_brush",
+        "Larger Brush",
+        lambda context: scale_brush(context, 1.15),
+        "Viewer/Handles",
+        "Shift+RightBracket",
+        "viewer",
+        paints,
+        repeats=True,
+    ),
+    Action(
+        "viewer.smaller_brush",
+        "Smaller Brush",
+        lambda context: scale_brush(context, 1.0 / 1.15),
+        "Viewer/Handles",
+        "Shift+LeftBracket",
+        "viewer",
+        paints,
+        repeats=True,
     ),
     Action(
         "viewer.remove_light",

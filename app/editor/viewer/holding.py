@@ -7,14 +7,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from ...authoring.commands import SetValue, SetValues
+from ...language.translation import translate
 from .dome import RADIUS, direction_at, knob_of, middle_of
 from .geometry import Box, Grip, Point, Sight, box_grip, drag_box, order_box, wipe_angle, wipe_grip
 from .gizmos import Gizmo, GizmoDrag
 from .ground import FAR, SCENE, depth_at
 from .handles import find_grip, list_gizmos
+from .light_sizes import SizeHandle, list_size_handles, resize_light
 from .lights import Lamp, change_light, drop_light, lamps, make_merge_token, place_light, suns, turn_spot
 from .mattes import click, picks
 from .orbit import Orbit, aspect_of, move_camera, scene_at
+from .painting import begin_stroke, extend_stroke, finish_stroke, make_stroke_token, paints
 from .snapping import Snapping
 from .splines import SplineTarget, aim_pen, can_draw, find_pen, find_spline, lift_pen, move_part, select_point
 
@@ -27,6 +30,7 @@ HoldKind = Literal[
     "light",
     "light depth",
     "light drop",
+    "light size",
     "goal",
     "goal depth",
     "sun",
@@ -40,6 +44,9 @@ HoldKind = Literal[
     "matte",
     "spline",
     "pen",
+    "paint",
+    "brush size",
+    "brush copy",
 ]
 
 ARM = 56.0
@@ -65,6 +72,8 @@ class HandleTarget:
     part: str = ""
     """The grip of the gizmo."""
     lamp: Lamp | None = None
+    size: SizeHandle | None = None
+    """The handle of a size of the lamp."""
     spline: SplineTarget | None = None
 
 
@@ -89,6 +98,8 @@ def aim(
         return HandleTarget("new region")
     if viewer.pen.is_drawing and can_draw(context):
         return HandleTarget("pen", part=find_pen(context, sight, at, scale))
+    if paints(context):
+        return HandleTarget("brush size" if shift else "brush copy" if alt or ctrl else "paint")
     if ctrl:
         return HandleTarget("measure")
     if grip_target := find_grip(list_gizmos(context, sight, scale), sight, at, scale):
@@ -124,6 +135,9 @@ def _light(
             return HandleTarget("light depth" if alt else "light drop" if shift else "light", lamp=lamp)
         if lamp.aims and math.dist(at, sight.place(lamp.aims[0])) <= near:
             return HandleTarget("goal depth" if alt else "goal", lamp=lamp)
+        for handle in list_size_handles(sight, lamp) if lamp.chosen else ():
+            if math.dist(at, handle.end) <= near:
+                return HandleTarget("light size", lamp=lamp, size=handle)
     return None
 
 
@@ -144,7 +158,7 @@ class MouseHold:
     orbit: Orbit | None = None
     """The camera at the start of the drag."""
     depth: float = 0.0
-    """The depth at the point where the button was pressed."""
+    """The depth at the point where the button was pressed; the size of the brush then."""
     deferred: GizmoDrag | None = None
     """What counts when the button is released."""
 
@@ -164,6 +178,11 @@ class MouseHold:
             select_point(context, aim.spline.outline, aim.spline.index if aim.spline.part != "curve" else -1)
         if aim.kind == "pen" and aim.part == "new":
             aim_pen(context, (x, y), None)
+        if aim.kind == "paint":
+            begin_stroke(context, (x, y))
+        elif aim.kind == "brush copy":
+            context.viewer.brush.copy_from((x, y))
+        hold.depth = context.viewer.brush.size if aim.kind == "brush size" else 0.0
         if aim.lamp is not None:
             held_point, context.items[str(aim.lamp.port)] = aim.lamp.at, aim.lamp.name
             if aim.kind in ("goal", "goal depth") and aim.lamp.aims:
@@ -171,6 +190,8 @@ class MouseHold:
             elif aim.kind == "sun":
                 knob = knob_of(sight, scale, aim.lamp.camera, aim.lamp.light.direction)
                 held_point, hold.offset = None, (knob[0] - at[0], knob[1] - at[1])
+            elif aim.size is not None:
+                held_point, hold.offset = None, (aim.size.end[0] - at[0], aim.size.end[1] - at[1])
         if aim.kind in ("orbit", "track") and (scene := scene_at(context)) is not None:
             hold.orbit = Orbit.of(scene)
             depth = depth_at(context, (x, y), SCENE) if aim.kind == "track" else None
@@ -206,12 +227,17 @@ class MouseHold:
                     viewer.zoom, viewer.pan = moved.zoom, moved.pan
             case "handle" if self.moved:
                 self._move_grip(sight, (x + self.offset[0], y + self.offset[1]), is_free, is_constrained)
-            case "light" | "light depth" | "light drop" | "goal" | "goal depth" | "sun" if self.moved:
+            case _ if self.aim.lamp is not None and self.moved:
                 self._move_light(sight, at, (x + self.offset[0], y + self.offset[1]))
             case "spline" if self.moved and self.aim.spline and self.aim.spline.part != "curve":
                 move_part(self.context, self.aim.spline, (x, y), is_broken=is_broken, pulls_tangents=is_broken)
             case "pen" if self.moved and self.aim.part == "new":
                 aim_pen(self.context, begun, (x, y))
+            case "paint":
+                extend_stroke(self.context, sight, (x, y))
+            case "brush size":
+                across = (at[0] - self.start[0]) * sight.density / sight.zoom
+                viewer.brush.resize(self.depth + 2.0 * across / sight.picture[1])
             case "orbit" | "track" if self.moved and self.orbit is not None:
                 self._move_camera(sight, at, self.orbit)
             case "wipe" if self.aim.grip == "angle":
@@ -235,7 +261,9 @@ class MouseHold:
         if self.deferred is not None:
             self._apply(self.deferred)
             viewer.deferred = None
-        if self.token:
+        if self.aim.kind == "paint":
+            finish_stroke(self.context, sight)
+        elif self.token:
             self.context.session.seal()
         elif self.aim.kind == "pen" and self.aim.part == "new":
             lift_pen(self.context)
@@ -258,6 +286,8 @@ class MouseHold:
             return f"handle {self.aim.gizmo.grips[0].port} {self.aim.part}"
         if self.aim.spline is not None:
             return self.aim.spline.outline.token
+        if self.aim.kind == "paint":
+            return make_stroke_token(self.context)
         return make_merge_token(self.aim.lamp) if self.aim.lamp else "orbit" if self.orbit else ""
 
     def _move_light(self, sight: Sight, at: Point, to: Point) -> None:
@@ -279,6 +309,8 @@ class MouseHold:
                 knob = at[0] + self.offset[0], at[1] + self.offset[1]
                 direction = direction_at(sight, self.scale, lamp.camera, knob)
                 change_light(self.context, lamp, direction=direction)
+            case "light size" if self.aim.size is not None:
+                resize_light(self.context, self.aim.size, (at[0] + self.offset[0], at[1] + self.offset[1]))
             case _:
                 pass
 
@@ -314,7 +346,7 @@ class MouseHold:
         (port, value), *others = drag.values.items()
         command = SetValue(port, value, merge=self.token)
         if others:
-            command = SetValues(drag.values, f"Set {port.node}", merge=self.token)
+            command = SetValues(drag.values, translate("Set {node}", node=port.node), merge=self.token)
         self.context.log.attempt(lambda: self.context.session.apply(command))
 
 

@@ -12,6 +12,7 @@ from imgui_bundle import imgui
 from ...color.management import ColorManager
 from ...color.primaries import REC709_LUMINANCE, find_luminance_weights
 from ...errors import HalationError
+from ...language.translation import translate
 from ...renderer.viewing.look import Look
 from ..theme.palette import RGB
 from ..theme.style import mix, u32, ui_scale
@@ -52,6 +53,8 @@ def about(context: ViewerContext, side: str, image: DisplayedImage | None, sight
     if image is not None:
         width, height = image.full_size
         words += [Word(f"{width}\u00d7{height}", palette.text), Word(describe(image.kind, image.channels), palette.dim)]
+        if image.pixel_aspect != 1.0:
+            words.append(Word(translate("pixel aspect {ratio:.4g}", ratio=image.pixel_aspect), palette.dim))
         if image.scale != 1.0:
             words.append(Word(f"1/{1 / image.scale:.0f}", palette.warning))
     if side != "A":
@@ -59,7 +62,7 @@ def about(context: ViewerContext, side: str, image: DisplayedImage | None, sight
     if image is not None and not image.kind.is_single:
         words.append(Word(f"{sight.zoom * 100:.{0 if sight.zoom >= 0.1 else 1}f} %", palette.dim))
     if preview.paused:
-        words.append(Word("paused", palette.warning))
+        words.append(Word(translate("paused"), palette.warning))
     elif preview.busy and not preview.completing:
         finished, total = preview.progress
         words.append(Word(f"{finished}/{total}", palette.accent))
@@ -71,8 +74,9 @@ def about(context: ViewerContext, side: str, image: DisplayedImage | None, sight
 def describe(kind: Kind, channels: int) -> str:
     """The kind of data, as text."""
     if kind.is_color:
-        return "RGBA" if kind is Kind.IMAGE else "color"
-    return f"vector {channels}" if kind is Kind.VECTOR else kind.value.lower()
+        return "RGBA" if kind is Kind.IMAGE else translate("color", "kind")
+    name = translate(kind.value.lower(), "kind")
+    return f"{name} {channels}" if kind is Kind.VECTOR else name
 
 
 def of_pixel(

@@ -7,25 +7,22 @@ from typing import TYPE_CHECKING
 
 from halation.nodes import Light, LightKind
 from imgui_bundle import imgui
-from msgspec.structs import replace
 
+from ...language.translation import translate
 from ..fields.colors import swatch
+from ..shared.declared_words import name_value
 from ..theme.palette import RGB
 from ..theme.style import mix, u32, ui_scale
 from .dome import RADIUS, knob_of, middle_of
 from .geometry import Point, Sight
+from .lamp_outlines import cone, outline, sides
+from .light_sizes import SizeHandle, list_size_handles
 from .lights import Lamp, lamps, suns
-from .perspective import Place, dot, move_place, project, unit
+from .perspective import Place, dot, project, unit
 from .strokes import BLACK, CHOSEN, SHADE, WHITE, around, draw_dashed_circle, draw_label, draw_path
 
 if TYPE_CHECKING:
     from .context import ViewerContext
-
-_STEPS = 64
-"""The number of corners of circles in perspective."""
-
-_WIDEST = 80.0
-"""Degrees: the circle of a wider cone would be larger than the picture."""
 
 _RINGS = 14
 
@@ -39,7 +36,7 @@ def draw_lamps(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) ->
         near = math.dist(at_mouse, at) <= reach
         ring = CHOSEN if near or lamp.chosen else WHITE
         if lamp.chosen:
-            _extent(lines, sight, lamp, ring)
+            _extent(context, lines, sight, lamp, ring)
         if lamp.aims:
             _goal(context, lines, sight, lamp, ring, near=math.dist(at_mouse, sight.place(lamp.aims[0])) <= reach)
         _knob(lines, at, lamp.light, ring)
@@ -93,12 +90,12 @@ def _goal(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight, lamp: L
     lines.add_circle(end, 5.0 * scale, u32(BLACK, SHADE), 0, 3.5 * scale)
     lines.add_circle(end, 5.0 * scale, u32(color), 0, 2.0 * scale)
     if near:
-        words = f"{lamp.name} shines here  depth {depth:.4g}"
+        words = translate("{name} shines here  depth {depth:.4g}", name=lamp.name, depth=depth)
         context.places[f"label goal {lamp.port} {lamp.name}"] = draw_label(lines, (end[0], end[1] + 20 * scale), words)
     context.places[f"goal {lamp.port} {lamp.name}"] = around(end, 6.0 * scale)
 
 
-def _extent(lines: imgui.ImDrawList, sight: Sight, lamp: Lamp, color: RGB) -> None:
+def _extent(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight, lamp: Lamp, color: RGB) -> None:
     """Draw the range as a dashed circle, the radius of a sphere, the edges of an area, and the cones of a spot."""
     light, at = lamp.light, sight.place(lamp.at)
     unit_size = lamp.camera.focal[0] * sight.picture[0] * sight.zoom / sight.density / lamp.depth
@@ -110,6 +107,8 @@ def _extent(lines: imgui.ImDrawList, sight: Sight, lamp: Lamp, color: RGB) -> No
     for edge in outline(light):
         if points := _project_places(sight, lamp, edge):
             draw_path(lines, points, color, 1.5, closed=True)
+    for handle in list_size_handles(sight, lamp):
+        _size_handle(context, lines, handle, color)
     for angle, width in ((light.outer, 1.5), (light.inner, 0.8)):
         rim = _project_places(sight, lamp, cone(lamp, angle)) if light.kind is LightKind.SPOT else []
         if not rim:
@@ -120,55 +119,16 @@ def _extent(lines: imgui.ImDrawList, sight: Sight, lamp: Lamp, color: RGB) -> No
                 draw_path(lines, (at, corner), color, width)
 
 
-def outline(light: Light) -> list[list[Place]]:
-    """The edges of a rectangle, a disc or a tube in the world, as closed paths."""
-    along, across = replace(light, roll=math.radians(light.roll)).half_axes
-    corners = ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0))
-    turns = [2.0 * math.pi * step / _STEPS for step in range(_STEPS)]
-    round_points = [(math.cos(turn), math.sin(turn)) for turn in turns]
-    if light.kind is LightKind.RECTANGLE:
-        return [[_add_axes(light.place, along, across, corner) for corner in corners]]
-    if light.kind is LightKind.DISC:
-        return [[_add_axes(light.place, along, across, point) for point in round_points]]
-    if light.kind is not LightKind.TUBE:
-        return []
-    deep = move_place((0.0, 0.0, 0.0), _cross(light.aim, unit(across)), light.size)
-    ends = [move_place(light.place, along, side) for side in (1.0, -1.0)]
-    sides = [[move_place(end, across, side) for end in ends] for side in (1.0, -1.0)]
-    return [*([_add_axes(end, across, deep, point) for point in round_points] for end in ends), *sides]
-
-
-def _add_axes(place: Place, along: Place, across: Place, parts: Point) -> Place:
-    return move_place(move_place(place, along, parts[0]), across, parts[1])
-
-
-def cone(lamp: Lamp, angle: float) -> list[Place]:
-    """The circle in which a spot's cone of that half angle ends, around what it shines to."""
-    goal = lamp.goal
-    if goal is None:
-        return []
-    way, length = unit(lamp.light.direction), math.dist(goal, lamp.light.place)
-    radius = length * math.tan(math.radians(min(angle, _WIDEST)))
-    side = _across(way, (0.0, 0.0, 1.0) if abs(way[2]) < 0.9 else (1.0, 0.0, 0.0))
-    perpendicular = _cross(way, side)
-    return [
-        move_place(move_place(goal, side, radius * math.cos(turn)), perpendicular, radius * math.sin(turn))
-        for turn in (2.0 * math.pi * step / _STEPS for step in range(_STEPS))
-    ]
-
-
-def sides(apex: Point, rim: list[Point]) -> tuple[Point, ...]:
-    """The corners of a rim that the outline of its cone touches; none if the apex lies inside of the rim."""
-    corners: list[Point] = []
-    for before, at, after in zip((rim[-1], *rim[:-1]), rim, (*rim[1:], rim[0]), strict=True):
-        if (_side(apex, at, before) >= 0.0) == (_side(apex, at, after) >= 0.0):
-            corners.append(at)
-    return tuple(corners)
-
-
-def _side(start: Point, end: Point, of: Point) -> float:
-    """Above 0 on one side of a line, below on the other."""
-    return (end[0] - start[0]) * (of[1] - start[1]) - (end[1] - start[1]) * (of[0] - start[0])
+def _size_handle(context: ViewerContext, lines: imgui.ImDrawList, handle: SizeHandle, color: RGB) -> None:
+    """Draw a square at the end of a size; with its number while the pointer is there, or holds it."""
+    scale, (x, y), mouse = ui_scale(), handle.end, imgui.get_mouse_pos()
+    near = math.dist((mouse.x, mouse.y), handle.end) <= 10.0 * scale
+    for half, ink in ((5.0, u32(BLACK, SHADE)), (3.5, u32(CHOSEN if near else color))):
+        lines.add_rect_filled((x - half * scale, y - half * scale), (x + half * scale, y + half * scale), ink)
+    if near:
+        number = getattr(handle.lamp.light, handle.field)
+        draw_label(lines, (x, y + 20.0 * scale), f"{name_value(handle.field)}  {number:.4g}")
+    context.places[f"size {handle.field} {handle.lamp.port} {handle.lamp.name}"] = around(handle.end, 5.0 * scale)
 
 
 def _project_places(sight: Sight, lamp: Lamp, places: list[Place]) -> list[Point]:
@@ -189,11 +149,3 @@ def _ball(lines: imgui.ImDrawList, middle: Point, radius: float, sun: Lamp) -> N
         away = radius * part * 0.9
         center = middle[0] + x * away, middle[1] + y * away
         lines.add_circle_filled(center, radius * (1.0 - 0.9 * part), u32(mix((0.1, 0.1, 0.1), color, light)))
-
-
-def _across(way: Place, near: Place) -> Place:
-    return unit(_cross(way, near))
-
-
-def _cross(a: Place, b: Place) -> Place:
-    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]

@@ -11,9 +11,11 @@ from halation.nodes import LIGHTS, CameraModel, ItemSet, Kind, Light, LightKind,
 from ...authoring.commands import AddItem, RemoveItem, SetValues
 from ...graph import Port, Unknown, signature
 from ...graph.named_items import join_path
+from ...language.translation import translate
 from ..fields.item_facts import choose_item, neighbor_of
 from .geometry import Point
 from .ground import surface_at
+from .item_lists import find_item_lists
 from .perspective import Place, dot, move_place, project, unit, unproject
 
 if TYPE_CHECKING:
@@ -32,6 +34,7 @@ _OVER = 0.05
 """The distance from a surface to a light dropped on it, as a fraction of the depth; a sphere's radius is added."""
 
 _DEFAULT_DEPTH = 5.0
+"""Units of the scene in front of the camera, where a first light is put that meets no surface. Chosen by judgement."""
 
 _AIMED = (LightKind.SPOT, LightKind.RECTANGLE, LightKind.DISC, LightKind.TUBE)
 """The lights at a place that have a direction."""
@@ -99,14 +102,7 @@ def _list_lamps(context: ViewerContext) -> tuple[Lamp, ...]:
 
 def lists(context: ViewerContext) -> tuple[Port, ...]:
     """The values of the active node that hold lights; none while handles are hidden."""
-    session = context.session
-    if not context.viewer.has_gizmos:
-        return ()
-    item = session.graph.nodes.get(session.active)
-    if item is None or isinstance(item, Unknown):
-        return ()
-    ports = (Port(session.active, name) for name, value in signature(item).values.items() if value.items is LIGHTS)
-    return tuple(ports)
+    return find_item_lists(context, LIGHTS)
 
 
 def _items(context: ViewerContext, port: Port) -> ItemSet:
@@ -161,7 +157,7 @@ def change_light(context: ViewerContext, lamp: Lamp, **fields: object) -> None:
         return
     values = {Port(lamp.port.node, join_path(lamp.port.socket, lamp.name, name)): part for name, part in fields.items()}
     context.interface.dragging = True
-    label = f"Move {lamp.name}"
+    label = translate("Move {element}", element=lamp.name)
     context.log.attempt(lambda: context.session.apply(SetValues(values, label, merge=make_merge_token(lamp))))
 
 

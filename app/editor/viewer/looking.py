@@ -90,6 +90,7 @@ def look_of(
     gray = _GRAYS[state.background]
     return Look(
         zoom=sight.zoom,
+        stretch=sight.stretch,
         pan=sight.pan,
         channels=state.channels,
         meaning="image" if meaning == "auto" else meaning,
@@ -115,7 +116,7 @@ def look_of(
 
 def picture_only(look: Look) -> Look:
     """The look at the picture's own size, without overlays that only help to judge it."""
-    return replace(look, zoom=1.0, pan=(0.0, 0.0), clipping=False, nonfinite=False, region=None)
+    return replace(look, zoom=1.0, stretch=1.0, pan=(0.0, 0.0), clipping=False, nonfinite=False, region=None)
 
 
 def display_pixels(pixels: Array, look: Look) -> Array:

@@ -11,6 +11,7 @@ from imgui_bundle import imgui
 
 from ...authoring.commands import SetValue
 from ...graph import Port
+from ...language.translation import translate
 from ...render_layers.mattes import IdMap
 from ..shared.render_facts import matte_at, pick_value, render_file
 from ..theme.style import u32, ui_scale
@@ -34,7 +35,7 @@ class MatteHit:
     def words(self) -> str:
         """The text of the label."""
         if not self.name:
-            return f"id {self.id:08x}: the file has no name for it"
+            return translate("id {id:08x}: the file has no name for it", id=self.id)
         return f"{icons.ICON_FA_CHECK}  {self.name}" if self.on else self.name
 
 
@@ -70,7 +71,7 @@ def click(context: ViewerContext, sight: Sight, at: Point) -> None:
     if hit is None:
         return
     if not hit.name:
-        context.log.add(f"the file has no name for the id {hit.id:08x}: it cannot be picked by name")
+        context.log.add(translate("the file has no name for the id {id:08x}: it cannot be picked by name", id=hit.id))
         return
     session = context.session
     pick = toggle_name(str(session.graph.value(hit.port)), hit.name, hit.matte.ids)

@@ -12,6 +12,7 @@ from halation.nodes import BuiltInScene, CameraModel, Node, SceneFile, orbit_cam
 
 from ...authoring.commands import ReplaceGraph
 from ...graph import Graph, Item, Port
+from ...language.translation import translate
 from ...media.meshes.load import load_mesh
 from ...resources.mesh import ATTRIBUTES
 from .perspective import Place, neat
@@ -153,7 +154,7 @@ def move_camera(context: ViewerContext, orbit: Orbit, merge: str = "") -> None:
     for name in ("target", "distance", "azimuth", "elevation"):
         if getattr(orbit, name) != getattr(before, name):
             graph = graph.set(Port(id, name), getattr(orbit, name))
-    context.log.attempt(lambda: session.apply(ReplaceGraph(f"Orbit {id}", graph, merge=merge)))
+    context.log.attempt(lambda: session.apply(ReplaceGraph(translate("Orbit {id}", id=id), graph, merge=merge)))
 
 
 def aspect_of(context: ViewerContext) -> float:

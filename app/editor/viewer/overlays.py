@@ -10,6 +10,7 @@ from imgui_bundle import imgui
 from ..theme.palette import RGB
 from ..theme.style import u32, ui_scale
 from .axes import draw_axes
+from .brush_lines import draw_brush
 from .focus import distance_in_words, find_focus_port, is_distance
 from .geometry import GRID_FROM, Box, Point, Sight, wipe_direction
 from .gizmo_lines import draw_gizmos
@@ -39,6 +40,7 @@ def draw_overlays(context: ViewerContext, sight: Sight) -> None:
     if viewer.compare == "wipe" and context.session.views.find_port("B") is not None:
         _wipe(context, lines, sight)
     draw_splines(context, lines, sight)
+    draw_brush(context, lines, sight)
     draw_gizmos(context, lines, sight)
     draw_lamps(context, lines, sight)
     draw_dome(context, lines, sight)
@@ -48,17 +50,23 @@ def draw_overlays(context: ViewerContext, sight: Sight) -> None:
     draw_name(context, sight)
 
 
+def draw_outline(context: ViewerContext, sight: Sight) -> None:
+    """Draw the edge of the frame, where the picture goes on beyond it."""
+    context.places["viewer frame"] = box = sight.rectangle((0.0, 0.0, 1.0, 1.0))
+    frame(imgui.get_window_draw_list(), box)
+
+
 def _grid(lines: imgui.ImDrawList, sight: Sight) -> None:
     """Draw lines between the visible pixels."""
     left, top, right, bottom = _visible(sight)
     color = u32(WHITE, min((sight.zoom - GRID_FROM) / 16.0, 1.0) * 0.16 + 0.04)
     x0, y0 = sight.screen((left, top))
     x1, y1 = sight.screen((right, bottom))
-    step = sight.zoom / sight.density
+    across, down = sight.pixel_size
     for index in range(right - left + 1):
-        lines.add_line((x0 + index * step, y0), (x0 + index * step, y1), color)
+        lines.add_line((x0 + index * across, y0), (x0 + index * across, y1), color)
     for index in range(bottom - top + 1):
-        lines.add_line((x0, y0 + index * step), (x1, y0 + index * step), color)
+        lines.add_line((x0, y0 + index * down), (x1, y0 + index * down), color)
 
 
 def _visible(sight: Sight) -> tuple[int, int, int, int]:

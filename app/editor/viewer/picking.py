@@ -8,8 +8,10 @@ from imgui_bundle import imgui
 
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Port, signature
+from ...language.translation import translate
 from ..theme.style import u32, ui_scale
 from ..toolkit.buttons import dropdown
+from ..toolkit.labels import make_label, translate_label
 
 if TYPE_CHECKING:
     from ...graph import Graph
@@ -20,9 +22,9 @@ def ports_of(graph: Graph) -> tuple[tuple[str, tuple[Port, ...]], ...]:
     """All ports that can be shown, grouped, in the order of the graph."""
     nodes = tuple(Port(id, name) for id in _order_nodes(graph) for name in signature(graph.nodes[id]).outputs)
     groups = (
-        ("Outputs", tuple(Port(OUTPUTS, name) for name in graph.outputs)),
-        ("Nodes", nodes),
-        ("Inputs", tuple(Port(INPUTS, name) for name in graph.inputs)),
+        (translate("Outputs"), tuple(Port(OUTPUTS, name) for name in graph.outputs)),
+        (translate("Nodes"), nodes),
+        (translate("Inputs"), tuple(Port(INPUTS, name) for name in graph.inputs)),
     )
     return tuple(group for group in groups if group[1])
 
@@ -37,7 +39,7 @@ def title(graph: Graph, port: Port) -> str:
 def pick_port(context: ViewerContext, side: str, label: str) -> None:
     """Draw the button with the shown port, and its menu."""
     name = f"button viewer {side}"
-    doc = f"What {side} shows. Ctrl+1 to Ctrl+9 assign a node to a key, 1 to 9 show it."
+    doc = translate("What {side} shows. Ctrl+1 to Ctrl+9 assign a node to a key, 1 to 9 show it.", side=side)
     dropdown(context, label, name, doc, lambda: list_ports(context, side))
     left, _, right, bottom = context.places[name]
     color = context.palette.accent if side == "A" else context.palette.good
@@ -50,13 +52,13 @@ def list_ports(context: ViewerContext, side: str) -> None:
     session = context.session
     chosen = session.views.find_port("A" if side == "A" else "B")
     numbers = {port: number for number, port in session.views.numbered_ports.items()}
-    if side == "B" and imgui.menu_item("Nothing", "", chosen is None)[0]:
+    if side == "B" and imgui.menu_item(translate_label("Nothing"), "", chosen is None)[0]:
         session.views.clear("B")
     for heading, ports in ports_of(session.graph):
         imgui.separator_text(heading)
         for port in ports:
             key = str(numbers[port]) if port in numbers else ""
-            if imgui.menu_item(f"{title(session.graph, port)}##{port}", key, port == chosen)[0]:
+            if imgui.menu_item(make_label(title(session.graph, port), str(port)), key, port == chosen)[0]:
                 context.log.attempt(lambda port=port: session.views.show(port, cast("Literal['A', 'B']", side)))
 
 

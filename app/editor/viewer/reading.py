@@ -34,7 +34,7 @@ class ValueReader:
         return self._remember(
             "small",
             _mark(image),
-            lambda: probe.read_small(image.texture, SMALL)[..., : image.channels].astype(np.float32),
+            lambda: probe.read_small(image.texture, SMALL, image.part)[..., : image.channels].astype(np.float32),
         )
 
     def read_pixel(self, probe: PixelProbe, name: str, image: DisplayedImage, pixel: Pixels) -> tuple[float, ...]:
@@ -51,7 +51,9 @@ class ValueReader:
 
     def measure_box(self, probe: PixelProbe, name: str, image: DisplayedImage, box: Box) -> Statistics:
         """The statistics of a box of fractions."""
-        part = texels(box, image.texture.size)
+        left, top, width, height = image.part
+        x, y, *size = texels(box, (width, height))
+        part = (left + x, top + y, size[0], size[1])
         return self._remember(
             ("box", name),
             (_mark(image), part),
@@ -89,10 +91,11 @@ class Scan:
                 self.wrong += count
 
     def _look_through(self, probe: PixelProbe, image: DisplayedImage) -> Iterator[int]:
-        width, height = image.texture.size
+        left, top, width, height = image.part
         rows = max(BAND // max(width, 1), 1)
-        for top in range(0, height, rows):
-            part = probe.read_region(image.texture, (0, top, width, min(rows, height - top)))[..., : image.channels]
+        for row in range(0, height, rows):
+            band = left, top + row, width, min(rows, height - row)
+            part = probe.read_region(image.texture, band)[..., : image.channels]
             yield int((~np.isfinite(part).all(axis=2)).sum())
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from halation.nodes import Kind
 
 from ...color.transforms import decode_srgb
+from ...language.translation import translate
 from ...media import write_picture
 from ..shared.dialogs import Browse
 from .looking import picture_only
@@ -48,7 +49,7 @@ def ask_to_save(context: ViewerContext, a: DisplayedImage, b: DisplayedImage | N
         context.display.release_slot("saved")
     name = f"{context.session.name}.{a.port.node.rpartition('/')[2]}.png"
     context.dialogs.browse = Browse(
-        "Save viewer picture",
+        translate("Save viewer picture"),
         "export",
         lambda path: context.log.attempt(lambda: _save(context, path, pixels)),
         saving=True,
@@ -65,4 +66,4 @@ def _save(context: ViewerContext, path: Path, pixels: np.ndarray) -> None:
         view="none",
         sandbox=context.session.sandbox,
     )
-    context.log.add(f"saved {path}")
+    context.log.add(translate("saved {path}", path=path))

@@ -9,6 +9,7 @@ from ...color.primaries import REC709_LUMINANCE
 Array = np.ndarray
 
 BINS = 256
+"""Bins of a histogram: one for each code of 8 bits."""
 
 CHROMA = 0.5 * 1.06
 """The range of Cb and Cr in the vectorscope, from minus to plus this: all display colors, with a margin of 6 %."""

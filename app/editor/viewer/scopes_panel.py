@@ -8,6 +8,7 @@ import numpy as np
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...language.translation import translate
 from ...renderer.viewing.plates import PlateTexture
 from ..shared.coloring import find_color_manager
 from ..theme.style import u32, ui_scale
@@ -45,7 +46,7 @@ class ScopesPanel:
         self._mark: object = None
         self._rgb = np.zeros((1, 1, 3), np.float32)
         self._waiting: list[str] = []
-        """The scopes that still wait for an update: one is updated per frame, so that the window stays fluid."""
+        """The scopes that still wait for an update, one in each frame, so that the window stays fluid; "" measures."""
         self._next = 0.0
         self._range = (0.0, 1.0)
         self._clipping = (0.0, 0.0)
@@ -57,17 +58,26 @@ class ScopesPanel:
         names = [name for name in SCOPES if name in self._context.viewer.scopes]
         if not names:
             draw_empty_panel(
-                self._context, icons.ICON_FA_CHART_AREA, "No scope is chosen", "Choose one with the buttons above."
+                self._context,
+                icons.ICON_FA_CHART_AREA,
+                translate("No scope is chosen"),
+                translate("Choose one with the buttons above."),
             )
             return
         if image is None:
             draw_empty_panel(
-                self._context, icons.ICON_FA_CHART_AREA, "Nothing to measure yet", "Scopes measure what A shows."
+                self._context,
+                icons.ICON_FA_CHART_AREA,
+                translate("Nothing to measure yet"),
+                translate("Scopes measure what A shows."),
             )
             return
         if image.kind.is_single:
             draw_empty_panel(
-                self._context, icons.ICON_FA_CHART_AREA, "Nothing to measure", "A shows one value, not a picture."
+                self._context,
+                icons.ICON_FA_CHART_AREA,
+                translate("Nothing to measure"),
+                translate("A shows one value, not a picture."),
             )
             return
         self._refresh(image, names)
@@ -91,15 +101,19 @@ class ScopesPanel:
         for icon, name in zip(_ICONS, SCOPES, strict=True):
             tool(self._context, icon, f"scopes.{name}")
             imgui.same_line(0.0, gap)
-        _wrap("Log")
+        _wrap(translate("Log", "histogram"))
         if quiet_button(
-            self._context, "Log", "button logarithmic", "Logarithmic histogram", lit=viewer.scopes_logarithmic
+            self._context,
+            translate("Log", "histogram"),
+            "button logarithmic",
+            translate("Logarithmic histogram"),
+            lit=viewer.scopes_logarithmic,
         ):
             viewer.scopes_logarithmic = not viewer.scopes_logarithmic
         imgui.same_line(0.0, gap)
-        label, lit = ("Scene", True) if viewer.scopes_of_scene else ("Display", False)
+        label, lit = (translate("Scene"), True) if viewer.scopes_of_scene else (translate("Display"), False)
         _wrap(label)
-        doc = "Measure scene-linear values, or display values"
+        doc = translate("Measure scene-linear values, or display values")
         if quiet_button(self._context, label, "button measured", doc, lit=lit):
             viewer.scopes_of_scene = not viewer.scopes_of_scene
 
@@ -125,15 +139,21 @@ class ScopesPanel:
         )
         time_now = imgui.get_time()
         if self._waiting:
-            self._make(self._waiting.pop(0))
+            self._take_step(image, self._waiting.pop(0))
             return
         if mark == self._mark or time_now < self._next:
             return
         self._mark, self._next = mark, time_now + (PLAYING if self._context.preview.skims else SECONDS)
+        self._waiting = ["", *names]  # nothing in this frame, in which the viewer has a new picture to draw
+
+    def _take_step(self, image: DisplayedImage, name: str) -> None:
+        """Update a scope, or without a name, what all of them measure."""
+        if name:
+            self._make(name)
+            return
         self._rgb = self._measure_pixels(image)
-        self._range = extent(self._rgb) if viewer.scopes_of_scene else (0.0, 1.0)
+        self._range = extent(self._rgb) if self._context.viewer.scopes_of_scene else (0.0, 1.0)
         self._clipping = measure_clipping(self._rgb)
-        self._waiting = list(names)
 
     def _make(self, name: str) -> None:
         plate = self._plates.get(name) or self._plates.setdefault(
@@ -192,7 +212,9 @@ class ScopesPanel:
         elif name == "histogram":
             graticules.range_lines(lines, palette, box, *self._range)
             dark, bright = self._clipping
-            graticules.hint(lines, palette, box, f"black {dark:.1%}  white {bright:.1%}")
+            graticules.hint(
+                lines, palette, box, translate("black {dark:.1%}  white {bright:.1%}", dark=dark, bright=bright)
+            )
         else:
             graticules.level_lines(lines, palette, box, *self._range)
         lines.pop_clip_rect()

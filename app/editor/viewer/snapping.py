@@ -8,6 +8,9 @@ from typing import Literal
 
 from .geometry import Point
 
+_SNAP_DEGREES = 2.0
+"""How near an angle must be to one that it snaps to. Chosen by feel."""
+
 FRACTIONS = (0.0, 1.0 / 3.0, 0.5, 2.0 / 3.0, 1.0)
 """What attracts, as fractions of the width and the height."""
 
@@ -49,4 +52,4 @@ class Snapping:
     def snap_angle(self, degrees: float) -> float:
         """An angle; whole steps of 15 degrees attract it from 2 degrees away, as they are far apart on a dial."""
         nearest = round(degrees / 15.0) * 15.0
-        return nearest if self.reach > 0.0 and abs(degrees - nearest) <= 2.0 else degrees
+        return nearest if self.reach > 0.0 and abs(degrees - nearest) <= _SNAP_DEGREES else degrees

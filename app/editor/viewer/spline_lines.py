@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
+from ...language.translation import translate
 from ..theme.style import u32, ui_scale
 from .geometry import Point, Sight
 from .grips import draw_grip, is_near
@@ -41,8 +42,8 @@ def draw_splines(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) 
 def _describe_pen(context: ViewerContext) -> str:
     """What the next press of the pen does."""
     if find_drawn(context) is None:
-        return "Click: a corner. Drag: a smooth point"
-    return "Click the first point to close the shape, or press N"
+        return translate("Click: a corner. Drag: a smooth point")
+    return translate("Click the first point to close the shape, or press N")
 
 
 def _draw_points(

@@ -24,10 +24,12 @@ from halation.nodes import (
 )
 
 from ...authoring.commands import AddItem, SetValues
-from ...graph import Port, Unknown, signature
+from ...graph import Port
 from ...graph.named_items import join_path
+from ...language.translation import mark, translate
 from ..fields.item_facts import choose_item
 from .geometry import Point, Sight
+from .item_lists import find_item_list
 
 if TYPE_CHECKING:
     from .context import ViewerContext
@@ -109,12 +111,7 @@ class SplineTarget:
 
 def find_list(context: ViewerContext) -> Port | None:
     """The value of the active node that holds splines; None while handles are hidden."""
-    session = context.session
-    item = session.graph.nodes.get(session.active)
-    if not context.viewer.has_gizmos or item is None or isinstance(item, Unknown):
-        return None
-    names = (name for name, value in signature(item).values.items() if value.items is ROTO_SHAPES)
-    return next((Port(session.active, name) for name in names), None)
+    return find_item_list(context, ROTO_SHAPES)
 
 
 def list_outlines(context: ViewerContext) -> tuple[SplineOutline, ...]:
@@ -210,13 +207,13 @@ def move_part(
     points = [*target.outline.points]
     points[target.index] = changed
     context.interface.dragging = True
-    _set_points(context, target.outline, points, "Move a point of", merge=target.outline.token)
+    _set_points(context, target.outline, points, mark("Move a point of {shape}"), merge=target.outline.token)
 
 
 def insert_on_curve(context: ViewerContext, target: SplineTarget) -> None:
     """Insert a point on a curve, which keeps its form."""
     points = insert_point(target.outline.points, target.index, target.t)
-    _set_points(context, target.outline, [_round(point) for point in points], "Insert a point in")
+    _set_points(context, target.outline, [_round(point) for point in points], mark("Insert a point in {shape}"))
     select_point(context, target.outline, target.index + 1)
 
 
@@ -231,13 +228,13 @@ def remove_point(context: ViewerContext) -> None:
     outline = list_outlines(context)[-1]
     index = find_selected(context, outline)
     points = [point for number, point in enumerate(outline.points) if number != index]
-    _set_points(context, outline, points, "Remove a point of")
+    _set_points(context, outline, points, mark("Remove a point of {shape}"))
     select_point(context, outline, -1)
 
 
-def _set_points(context: ViewerContext, outline: SplineOutline, points: list[Row], verb: str, merge: str = "") -> None:
+def _set_points(context: ViewerContext, outline: SplineOutline, points: list[Row], label: str, merge: str = "") -> None:
     """Set the points of a shape, or those of the key at this frame."""
-    command = SetValues({outline.points_port: join_points(points)}, f"{verb} {outline.name}", merge=merge)
+    command = SetValues({outline.points_port: join_points(points)}, translate(label, shape=outline.name), merge=merge)
     context.log.attempt(lambda: context.session.apply(command))
 
 
@@ -297,7 +294,7 @@ def lift_pen(context: ViewerContext) -> None:
         return
     outline = find_drawn(context)
     if outline is not None:
-        _set_points(context, outline, [*outline.points, point], "Add a point to")
+        _set_points(context, outline, [*outline.points, point], mark("Add a point to {shape}"))
         select_point(context, outline, len(outline.points))
         return
 

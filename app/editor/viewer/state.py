@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
+from .brush import PaintBrush
 from .pacing import Pace
 from .pen import SplinePen
 from .reading import ValueReader
@@ -25,6 +26,7 @@ CHANNELS: tuple[Channels, ...] = ("color", "red", "green", "blue", "alpha", "lum
 BACKGROUNDS: tuple[Background, ...] = ("checker", "black", "gray", "white")
 MEANINGS: tuple[Meaning, ...] = ("auto", "image", "field", "vector", "normal")
 PROXIES = (1.0, 0.5, 0.25, 0.125)
+"""The scales at which the viewer can render: with the last one a picture has a 64th of its pixels."""
 SCOPES = ("histogram", "waveform", "parade", "vectorscope")
 
 Box = tuple[float, float, float, float]
@@ -55,6 +57,12 @@ class ViewerState:
     toggled: bool = False
     """True shows B while comparing by toggle."""
     background: Background = "checker"
+    overscan: bool = True
+    """True shows what pictures have beyond their frame, dimmed."""
+    unsqueezes: bool = True
+    """True shows pixels in their shape, as the pixel aspect ratio of the picture says."""
+    pixel_aspect: float = 1.0
+    """That of the shown picture, as drawn last."""
     warn_clipping: bool = False
     warn_nonfinite: bool = True
     region: Box | None = None
@@ -102,6 +110,7 @@ class ViewerState:
     orbiting: bool = False
     """True lets the mouse move the camera of the viewed scene, not the picture."""
     pen: SplinePen = field(default_factory=SplinePen)
+    brush: PaintBrush = field(default_factory=PaintBrush)
     scene: str = ""
     """The node of that scene; "" if there is none."""
     reader: ValueReader = field(default_factory=ValueReader)
@@ -112,6 +121,11 @@ class ViewerState:
     scopes_of_scene: bool = False
     """True measures scene-linear values, False display values."""
     scopes_logarithmic: bool = False
+
+    @property
+    def stretch(self) -> float:
+        """How much wider than high pixels are shown."""
+        return self.pixel_aspect if self.unsqueezes else 1.0
 
     @property
     def compares(self) -> bool:

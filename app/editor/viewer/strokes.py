@@ -49,14 +49,14 @@ def draw_path(
             lines.add_line(first, second, shade, thick * scale)
 
 
-def draw_dashed_circle(lines: imgui.ImDrawList, center: Point, radius: float, color: RGB) -> None:
-    """A thin circle of dashes."""
+def draw_dashed_circle(lines: imgui.ImDrawList, center: Point, radius: float, color: RGB, stretch: float = 1.0) -> None:
+    """A thin circle of dashes, wider by `stretch`."""
     length = _DASH * ui_scale()
     count = min(max(round(math.pi * radius / length), 8), 360)
     for shade, width in ((u32(BLACK, SHADE), 2.5), (u32(color), 1.2)):
         for dash in range(count):
             start = 2.0 * math.pi * dash / count
-            lines.path_arc_to(center, radius, start, start + math.pi / count)
+            lines.path_elliptical_arc_to(center, (radius * stretch, radius), 0.0, start, start + math.pi / count)
             lines.path_stroke(shade, width * ui_scale())
 
 

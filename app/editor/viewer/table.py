@@ -8,6 +8,7 @@ import numpy as np
 from imgui_bundle import imgui
 
 from ...errors import HalationError
+from ...language.translation import translate
 from ..theme.style import ui_scale, vec4
 from ..toolkit.words import draw_dim, font
 from .geometry import Pixels
@@ -58,9 +59,13 @@ def rows_of(context: ViewerContext, reader: ValueReader) -> list[tuple[str, str,
                 continue
             statistics = reader.measure_box(context.probe, name, image, box)
             rows += [
-                (f"{name} least", "", statistics.low),
-                (f"{name} mean", f"{statistics.count} px", statistics.mean),
-                (f"{name} most", f"{statistics.wrong} NaN" if statistics.wrong else "", statistics.high),
+                (translate("{name} least", name=name), "", statistics.low),
+                (translate("{name} mean", name=name), f"{statistics.count} px", statistics.mean),
+                (
+                    translate("{name} most", name=name),
+                    f"{statistics.wrong} NaN" if statistics.wrong else "",
+                    statistics.high,
+                ),
             ]
     return rows
 
@@ -76,8 +81,10 @@ def draw_table(context: ViewerContext, reader: ValueReader, height: float) -> No
         imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + 2 * ui_scale())
         if imgui.begin_table("pixel values", len(_HEADINGS), _FLAGS, (0, height)):
             imgui.table_setup_scroll_freeze(0, 1)
+            longest = max((imgui.calc_text_size(name).x for name, _, _ in rows), default=0.0)
             for number, heading in enumerate(_HEADINGS):
                 width = imgui.get_font_size() * (6.0, 5.5, 4.6, 4.6, 4.6, 4.6)[number]
+                width = width if number else max(width, longest)
                 imgui.table_setup_column(heading, int(imgui.TableColumnFlags_.width_fixed), width)
             imgui.table_headers_row()
             for name, place, values in rows:

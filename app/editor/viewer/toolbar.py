@@ -11,14 +11,16 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...color.display import NO_LOOK, NO_VIEW, VIDEO_VIEW, list_displays, list_looks, list_views
+from ...language.translation import mark, translate
 from ..shared.coloring import find_color_manager
 from ..theme.style import ui_scale
 from ..toolkit.buttons import dropdown, entries, entry, tool, width_of_buttons
 from ..toolkit.fields import number
+from ..toolkit.labels import make_label, translate_label
 from .focus import find_focus_port
 from .picking import list_ports, pick_port
 from .state import MEANINGS
-from .wanted import A, B
+from .wanted import A, B, has_overscan
 
 if TYPE_CHECKING:
     from .context import ViewerContext
@@ -30,8 +32,8 @@ _SHORT: Mapping[str, str] = MappingProxyType(
         "green": "G",
         "blue": "B",
         "alpha": "A",
-        "luminance": "Lum",
-        "false color": "False",
+        "luminance": mark("Lum"),
+        "false color": mark("False"),
     }
 )
 _GAP, _APART = 2.0, 10.0
@@ -68,7 +70,7 @@ def draw_toolbar(context: ViewerContext, asked_view: str, is_data: bool) -> None
             for viewer_tool in tools[count:]:
                 viewer_tool.draw_entry()
 
-        dropdown(context, icons.ICON_FA_ELLIPSIS, "button more tools", "More tools", rest)
+        dropdown(context, icons.ICON_FA_ELLIPSIS, "button more tools", translate("More tools"), rest)
 
 
 def _space(viewer_tool: _ViewerTool) -> float:
@@ -89,7 +91,10 @@ def _count_tools(tools: list[_ViewerTool], room: float) -> int:
 
 def _tools(context: ViewerContext, asked_view: str, is_data: bool) -> list[_ViewerTool]:
     viewer = context.viewer
-    tools = [_port(context, A), _menu(context, icons.ICON_FA_CLONE, "compare", "Compare A with B", lit=viewer.compares)]
+    tools = [
+        _port(context, A),
+        _menu(context, icons.ICON_FA_CLONE, "compare", translate("Compare A with B"), lit=viewer.compares),
+    ]
     if viewer.compares:
         tools.append(_port(context, B))
     if is_data:
@@ -98,25 +103,47 @@ def _tools(context: ViewerContext, asked_view: str, is_data: bool) -> list[_View
         tools.append(_action(context, icons.ICON_FA_CAMERA_ROTATE, "viewer.orbit"))
     if find_focus_port(context.session):
         tools.append(_action(context, icons.ICON_FA_CROSSHAIRS, "viewer.pick_focus"))
-    lit, widest = viewer.channels != "color", max(map(width_of_buttons, _SHORT.values()))
-    tools.append(_menu(context, _SHORT[viewer.channels], "channels", "Channels", lit=lit, apart=True, width=widest))
+    lit, widest = viewer.channels != "color", max(width_of_buttons(translate(short)) for short in _SHORT.values())
+    tools.append(
+        _menu(
+            context,
+            translate(_SHORT[viewer.channels]),
+            "channels",
+            translate("Channels"),
+            lit=lit,
+            apart=True,
+            width=widest,
+        )
+    )
     if not is_data or viewer.meaning == "image":  # other data is shown as it is
         tools += _brightness(context)
+    framing = [
+        _action(context, icons.ICON_FA_EXPAND, "viewer.fit", apart=True),
+        _action(context, "1:1", "viewer.actual"),
+    ]
+    if viewer.pixel_aspect != 1.0:
+        framing.append(_action(context, icons.ICON_FA_ARROWS_LEFT_RIGHT, "viewer.unsqueeze"))
+    if has_overscan(context):
+        framing.append(_action(context, icons.ICON_FA_OBJECT_UNGROUP, "viewer.overscan"))
     tools += [
         _menu(
             context,
             f"1/{1 / viewer.proxy:.0f}",
             "proxy",
-            "Proxy: compute at a lower resolution",
+            translate("Proxy: compute at a lower resolution"),
             lit=viewer.proxy != 1.0,
             apart=True,
             more=lambda: _proxy_while_dragging(context),
         ),
         _action(context, icons.ICON_FA_PLAY if viewer.paused else icons.ICON_FA_PAUSE, "viewer.pause"),
-        _action(context, icons.ICON_FA_EXPAND, "viewer.fit", apart=True),
-        _action(context, "1:1", "viewer.actual"),
+        *framing,
         _menu(
-            context, icons.ICON_FA_TRIANGLE_EXCLAMATION, "warnings", "Warnings", lit=viewer.warn_clipping, apart=True
+            context,
+            icons.ICON_FA_TRIANGLE_EXCLAMATION,
+            "warnings",
+            translate("Warnings"),
+            lit=viewer.warn_clipping,
+            apart=True,
         ),
         _action(context, icons.ICON_FA_CROP_SIMPLE, "viewer.region"),
         _action(context, icons.ICON_FA_TABLE_LIST, "viewer.table"),
@@ -125,7 +152,7 @@ def _tools(context: ViewerContext, asked_view: str, is_data: bool) -> list[_View
             context,
             icons.ICON_FA_CHESS_BOARD,
             "background",
-            "Background of transparent pixels",
+            translate("Background of transparent pixels"),
             lit=viewer.background != "checker",
         ),
     ]
@@ -155,7 +182,7 @@ def _dropdown(
     width: float = 0.0,
 ) -> _ViewerTool:
     def draw_entry() -> None:
-        if imgui.begin_menu(f"{doc}##{name}"):
+        if imgui.begin_menu(make_label(doc, name)):
             fill()
             imgui.end_menu()
 
@@ -189,11 +216,11 @@ def _menu(
 
 def _port(context: ViewerContext, side: str) -> _ViewerTool:
     port = context.session.views.find_port("A" if side == A else "B")
-    name = str(port) if port else "nothing"
+    name = str(port) if port else translate("nothing")
     label = f"{side}  {name if len(name) <= 22 else f'{name[:21]}…'}"
 
     def draw_entry() -> None:
-        if imgui.begin_menu(f"{side} shows##{side}"):
+        if imgui.begin_menu(make_label(translate("{side} shows", side=side), f"{side}")):
             list_ports(context, side)
             imgui.end_menu()
 
@@ -206,7 +233,9 @@ def _number(width: float, draw: Callable[[float], object], apart: bool = False) 
 
 def _brightness(context: ViewerContext) -> list[_ViewerTool]:
     viewer, font = context.viewer, imgui.get_font_size()
-    doc = "Gain of the difference" if viewer.compare == "difference" else "Exposure"
+    doc = translate("Exposure in the viewer, in stops: drag, or click and type; right click for 0")
+    if viewer.compare == "difference":
+        doc = translate("Gain of the difference in the viewer, in stops: drag, or click and type; right click for 0")
 
     def exposure(width: float) -> None:
         viewer.exposure = number(
@@ -215,7 +244,7 @@ def _brightness(context: ViewerContext) -> list[_ViewerTool]:
             viewer.exposure,
             "%+.2f EV",
             width,
-            f"{doc} in the viewer, in stops: drag, or click and type; right click for 0",
+            doc,
             neutral=0.0,
             speed=0.02,
             low=-20.0,
@@ -229,7 +258,7 @@ def _brightness(context: ViewerContext) -> list[_ViewerTool]:
             viewer.gamma,
             "\u03b3 %.2f",
             width,
-            "Gamma in the viewer: drag, or click and type; right click for 1",
+            translate("Gamma in the viewer: drag, or click and type; right click for 1"),
             neutral=1.0,
             low=0.1,
             high=5.0,
@@ -247,29 +276,31 @@ def _range(context: ViewerContext) -> list[_ViewerTool]:
 
     def menu() -> None:
         for meaning in MEANINGS:
-            title = f"Show as {meaning}" if meaning != "auto" else "Detect automatically"
-            if imgui.menu_item(title, "", viewer.meaning == meaning)[0]:
+            title = translate("Show as {meaning}", meaning=translate(meaning, "meaning of data"))
+            if meaning == "auto":
+                title = translate("Detect automatically")
+            if imgui.menu_item(make_label(title, meaning), "", viewer.meaning == meaning)[0]:
                 viewer.meaning = meaning
         imgui.separator()
-        if imgui.menu_item("Measure the Range", "", measured)[0]:
+        if imgui.menu_item(translate_label("Measure the Range"), "", measured)[0]:
             viewer.low = viewer.high = 0.0
 
     def black(width: float) -> None:
-        new_low = number(context, "data low", low, "%.3g", width, "Shown as black", speed=speed)
+        new_low = number(context, "data low", low, "%.3g", width, translate("Shown as black"), speed=speed)
         if new_low != low:
             viewer.low, viewer.high = new_low, high
 
     def white(width: float) -> None:
-        new_high = number(context, "data high", high, "%.3g", width, "Shown as white", speed=speed)
+        new_high = number(context, "data high", high, "%.3g", width, translate("Shown as white"), speed=speed)
         if new_high != high:
             viewer.low, viewer.high = low, new_high
 
-    how = _dropdown(context, icons.ICON_FA_RULER_HORIZONTAL, "range", "How to show data", menu, not measured)
+    how = _dropdown(context, icons.ICON_FA_RULER_HORIZONTAL, "range", translate("How to show data"), menu, not measured)
     return [_number(font * 4.4, black, apart=True), _number(font * 4.4, white), how]
 
 
-_VIEW_WORDS = {"": "the default", NO_VIEW: "no view", VIDEO_VIEW: "no view, BT.1886"}
-_VIEW_TITLES = {NO_VIEW: "No view", VIDEO_VIEW: "No view (BT.1886)"}
+_VIEW_WORDS = {"": mark("the default"), NO_VIEW: mark("no view"), VIDEO_VIEW: mark("no view, BT.1886")}
+_VIEW_TITLES = {NO_VIEW: mark("No view"), VIDEO_VIEW: mark("No view (BT.1886)")}
 
 
 def _view(context: ViewerContext, asked_view: str) -> _ViewerTool:
@@ -277,8 +308,11 @@ def _view(context: ViewerContext, asked_view: str) -> _ViewerTool:
 
     def menu() -> None:
         if context.coloring.fault:
-            imgui.text_disabled("The color config cannot be read: these are the built-in views")
-        if imgui.menu_item(f"From the output ({_VIEW_WORDS.get(asked_view, asked_view)})", "", not viewer.view)[0]:
+            imgui.text_disabled(translate("The color config cannot be read: these are the built-in views"))
+        view_name = translate(_VIEW_WORDS[asked_view]) if asked_view in _VIEW_WORDS else asked_view
+        if imgui.menu_item(
+            make_label(translate("From the output ({view})", view=view_name), "output"), "", not viewer.view
+        )[0]:
             viewer.view = viewer.display = ""
         imgui.separator()
         for display in list_displays(color):
@@ -290,20 +324,21 @@ def _view(context: ViewerContext, asked_view: str) -> _ViewerTool:
                 imgui.end_menu()
         if looks := list_looks(color):
             imgui.separator()
-            if imgui.begin_menu("Look"):
-                for look, title in (("", "From the view"), (NO_LOOK, "None"), *((name, name) for name in looks)):
-                    if imgui.menu_item(title, "", viewer.look == look)[0]:
+            if imgui.begin_menu(translate_label("Look")):
+                usual = (("", translate("From the view")), (NO_LOOK, translate("None")))
+                for look, title in (*usual, *((name, name) for name in looks)):
+                    if imgui.menu_item(make_label(title, f"look {look}"), "", viewer.look == look)[0]:
                         viewer.look = look
                 imgui.end_menu()
 
-    view_name = viewer.view or asked_view or "Default"
-    label = f"{icons.ICON_FA_DISPLAY}  {_VIEW_TITLES.get(view_name, view_name)}"
-    return _dropdown(context, label, "view", "Display and view (OpenColorIO)", menu, bool(viewer.view), True)
+    view_name = viewer.view or asked_view or translate("Default")
+    label = f"{icons.ICON_FA_DISPLAY}  {translate(_VIEW_TITLES[view_name]) if view_name in _VIEW_TITLES else view_name}"
+    return _dropdown(context, label, "view", translate("Display and view (OpenColorIO)"), menu, bool(viewer.view), True)
 
 
 def _proxy_while_dragging(context: ViewerContext) -> None:
     coarse = context.store.current.proxy_while_dragging
-    if imgui.menu_item("Lower resolution while dragging", "", coarse)[0]:
+    if imgui.menu_item(translate_label("Lower resolution while dragging"), "", coarse)[0]:
         context.log.attempt(lambda: context.store.change(proxy_while_dragging=not coarse))
 
 

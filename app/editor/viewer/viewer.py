@@ -10,12 +10,14 @@ from imgui_bundle import imgui
 
 from ...authoring.commands import SetValue
 from ...graph import OUTPUTS, Port
+from ...language.translation import translate, translate_plural
 from ...renderer.viewing.look import Look
 from ..shared.coloring import find_color_manager
 from ..theme.style import u32, ui_scale
 from ..toolkit.keys import display_shortcut
 from . import infobar
 from .banner import draw_banner
+from .brush_bar import draw_brush_bar
 from .finding import InvalidPixelSearch
 from .focus import is_distance
 from .geometry import Sight
@@ -26,7 +28,7 @@ from .looking import choose_meaning, choose_range, choose_view, look_of
 from .mattes import picks
 from .measuring import format_pixel, format_pixel_number, make_opaque_color
 from .orbit import find_orbit_node
-from .overlays import draw_badge, draw_message, draw_overlays, draw_progress
+from .overlays import draw_badge, draw_message, draw_outline, draw_overlays, draw_progress
 from .pacing import PictureTimer
 from .played_pictures import STILL, PlayedPictures
 from .reading import Scan, ValueReader
@@ -39,6 +41,9 @@ from .wanted import A, B
 if TYPE_CHECKING:
     from ...authoring.preview import DisplayedImage
     from .context import ViewerContext
+
+_NOTICED_SECONDS = 0.12
+"""How long a render may take before the viewer says so: shorter waits are hardly noticed. Chosen by judgement."""
 
 TABLE_LINES = 7
 """The lines of the pixel table, always the same: otherwise the picture would move under the pointer."""
@@ -104,6 +109,7 @@ class Viewer:
         imgui.set_cursor_screen_pos((inner.min.x + pad, inner.min.y + pad))
         draw_banner(self._context)
         draw_toolbar(self._context, images.view, images.a is not None and images.a.kind in (Kind.FIELD, Kind.VECTOR))
+        draw_brush_bar(self._context)
         imgui.push_style_var(imgui.StyleVar_.item_spacing, (0.0, 0.0))
         try:
             self._draw_panel(images)
@@ -139,13 +145,13 @@ class Viewer:
         density = imgui.get_io().display_framebuffer_scale.x or 1.0
         origin = round(start.x), round(start.y)
         viewer.panel = round(size[0] * density) // across, round(size[1] * density)
-        viewer.picture = a.full_size if a is not None else (1, 1)
+        viewer.picture, viewer.pixel_aspect = (a.full_size, a.pixel_aspect) if a is not None else ((1, 1), 1.0)
         imgui.set_next_item_allow_overlap()
         imgui.invisible_button("##picture", size, _CATCH)
         self._context.places["viewer panel"] = (origin[0], origin[1], origin[0] + size[0], origin[1] + size[1])
 
         def sight() -> Sight:
-            return Sight.of(origin, viewer.panel, viewer.picture, viewer.zoom, viewer.pan, density)
+            return Sight.of(origin, viewer.panel, viewer.picture, viewer.zoom, viewer.pan, density, viewer.stretch)
 
         if not imgui.is_item_active():
             self._right = across == 2 and imgui.get_mouse_pos().x >= origin[0] + viewer.panel[0] / density
@@ -203,6 +209,8 @@ class Viewer:
             self._context.display.release_slot("viewer beside")
         if images.a is not None:
             lines.push_clip_rect((x, y), corner, True)
+            if images.a.reaches_beyond:
+                draw_outline(self._context, sight)
             draw_overlays(self._context, sight)
             lines.pop_clip_rect()
         self._save(images, look)
@@ -246,31 +254,33 @@ class Viewer:
             draw_message(self._context, sight, self._hint(), palette.dim)
         elif viewer.compares and self._context.session.views.find_port("B") is None:
             keys = display_shortcut(self._context.actions.shortcut("node.view_b"))
-            sentence = f"B shows nothing: choose it above, or press {keys} on a node"
+            sentence = translate("B shows nothing: choose it above, or press {keys} on a node", keys=keys)
             draw_badge(self._context, sight, sentence, palette.warning)
         elif viewer.picking:
-            draw_badge(self._context, sight, "Click to pick. Right click cancels", palette.accent)
+            draw_badge(self._context, sight, translate("Click to pick. Right click cancels"), palette.accent)
         elif viewer.drawing_region:
-            draw_badge(self._context, sight, "Drag a rectangle", palette.accent)
+            draw_badge(self._context, sight, translate("Drag a rectangle"), palette.accent)
         elif picks(self._context):
-            draw_badge(self._context, sight, "Click objects to pick them", palette.accent)
+            draw_badge(self._context, sight, translate("Click objects to pick them"), palette.accent)
         elif viewer.finding:
             self._search += 1
             dots = 3 if self._context.store.current.reduced_motion else self._search // 8 % 4
-            draw_badge(self._context, sight, f"Searching{'.' * dots}", palette.accent)
+            draw_badge(self._context, sight, f"{translate('Searching')}{'.' * dots}", palette.accent)
         elif self._scan.wrong and viewer.warn_nonfinite:
             self._offer_search(sight)
         if images.a is not None and not fault and images.a.kind.is_single:
             values = self._reader.read_pixel(self._context.probe, "single", images.a, (0, 0))
             draw_message(self._context, sight, "  ".join(format_pixel_number(value) for value in values), palette.text)
         waited = imgui.get_time() - self._busy_since if self._busy_since is not None else 0.0
-        if waited > 0.12 and not preview.paused:
+        if waited > _NOTICED_SECONDS and not preview.paused:
             finished, total = preview.progress
             draw_progress(self._context, sight, finished / total if total else 0.0)
 
     def _offer_search(self, sight: Sight) -> None:
         count = self._scan.wrong
-        text = f"{count} pixel{'s' if count != 1 else ''} NaN or infinite: find the source"
+        text = translate_plural(
+            "{count} pixel NaN or infinite: find the source", "{count} pixels NaN or infinite: find the source", count
+        )
         box = draw_badge(self._context, sight, text, self._context.palette.error)
         back = imgui.get_cursor_screen_pos()
         imgui.set_cursor_screen_pos(box[:2])
@@ -321,7 +331,7 @@ class Viewer:
         if viewer.copying:
             port = self._context.session.views.find_port("A")
             self._context.clipboard.put(format_pixel(str(port), viewer.pixel, values))
-            self._context.log.add(f"copied {viewer.pixel[0]}, {viewer.pixel[1]}")
+            self._context.log.add(translate("copied {x}, {y}", x=viewer.pixel[0], y=viewer.pixel[1]))
         if self._hand.picked_point is not None and viewer.picking:
             port = Port.parse(viewer.picking)
             picked_value = self._convert_pick(port, values)
@@ -346,9 +356,9 @@ class Viewer:
     def _hint(self) -> str:
         port = self._context.session.views.find_port("A")
         if port is not None and port.node == OUTPUTS:
-            return f"Nothing is linked to the output '{port.socket}' yet."
+            return translate("Nothing is linked to the output '{socket}' yet.", socket=port.socket)
         keys = display_shortcut(self._context.actions.shortcut("node.add"))
-        return f"Nothing to show yet: add a node ({keys} over the graph), or drop an image here."
+        return translate("Nothing to show yet: add a node ({keys} over the graph), or drop an image here.", keys=keys)
 
     def _time(self, images: _FrameImages) -> None:
         """Measure how long pictures take, for the info line and the proxy of drags."""

@@ -55,12 +55,22 @@ def find_visible_region(context: ViewerContext) -> VisibleRegion | None:
     for image in sides.values():
         if image is None or image.full_size != viewer.picture or measures(viewer, image.kind):
             return None
-    sight = Sight.of((0.0, 0.0), viewer.panel, viewer.picture, viewer.zoom, viewer.pan)
+    sight = Sight.of((0.0, 0.0), viewer.panel, viewer.picture, viewer.zoom, viewer.pan, 1.0, viewer.stretch)
     (left, top), (right, bottom) = sight.fraction((0.0, 0.0)), sight.fraction(viewer.panel)
     left, top, right, bottom = max(left, 0.0), max(top, 0.0), min(right, 1.0), min(bottom, 1.0)
     if not sides or left >= right or top >= bottom:
         return None
     return VisibleRegion((left, top, right, bottom), viewer.picture, frozenset(sides))
+
+
+def list_whole_sides(context: ViewerContext) -> frozenset[str]:
+    """The pictures of which the viewer shows what lies beyond the frame as well."""
+    return frozenset(_sides(context)) if context.viewer.overscan and has_overscan(context) else frozenset()
+
+
+def has_overscan(context: ViewerContext) -> bool:
+    """True if pictures of the document may go on beyond their frame."""
+    return context.session.root.settings.overscan > 0.0
 
 
 def _sides(context: ViewerContext) -> dict[str, Port]:

@@ -20,6 +20,7 @@ from ..history.context import HistoryContext
 from ..inspector.context import InspectorContext
 from ..library.context import PresetContext
 from ..log.context import LogContext
+from ..matching.context import MatchContext
 from ..passes.context import PassesContext
 from ..preferences.context import PreferencesContext
 from ..problems.context import ProblemsContext
@@ -55,6 +56,7 @@ class Contexts:
     history: HistoryContext
     inspector: InspectorContext
     log: LogContext
+    matching: MatchContext
     passes: PassesContext
     presets: PresetContext
     preferences: PreferencesContext
@@ -85,6 +87,7 @@ def compose_contexts(editor: Editor) -> Contexts:
         HistoryContext.compose(editor),
         InspectorContext.compose(editor, editor.canvas, editor.viewer, editor.timeline),
         LogContext.compose(editor),
+        MatchContext.compose(editor),
         PassesContext.compose(editor),
         PresetContext.compose(editor, editor.viewer),
         PreferencesContext.compose(editor),

@@ -9,6 +9,7 @@ from pathlib import Path
 from ...authoring.commands import DropFiles
 from ...authoring.edits.coding import ENDINGS
 from ...authoring.edits.element_id import ElementId
+from ...language.translation import translate
 from ...media.sequences import find_sequence
 from ...watch.sequence_files import suggest_patterns
 from ..shared.dialogs import Question
@@ -54,10 +55,13 @@ def add_files(editor: Editor, paths: Sequence[Path]) -> None:
     sequence = find_sequence(str(pattern), sandbox=editor.session.sandbox)
     count = len(sequence.frames) if sequence else 0
     editor.dialogs.question = Question(
-        "One of a sequence",
-        f"{first.name} is one of {count} frames of {pattern.name}.",
+        translate("One of a sequence"),
+        translate("{name} is one of {count} frames of {pattern}.", name=first.name, count=count, pattern=pattern.name),
         (
-            ("Read the sequence", lambda: editor.log.attempt(lambda: drop([frames.get(path, path) for path in files]))),
-            ("Only this frame", lambda: editor.log.attempt(lambda: drop(files))),
+            (
+                translate("Read the sequence"),
+                lambda: editor.log.attempt(lambda: drop([frames.get(path, path) for path in files])),
+            ),
+            (translate("Only this frame"), lambda: editor.log.attempt(lambda: drop(files))),
         ),
     )

@@ -12,12 +12,13 @@ from imgui_bundle import imgui
 from ...authoring.preview.request import PreviewRequest
 from ...compiler.library import reload_library
 from ...graph import Port
+from ...language.translation import mark, translate
 from ...watch.code_files import code_files
 from ...watch.reloading import NodeFiles, migrate_graph, shader_folder
 from ...watch.sequence_files import list_sequence_files
 from ...watch.watching import FileChange, Kind, find_group_files, find_pictures
 from ..problems.findings import service_faults
-from ..viewer.wanted import A, find_visible_region, list_wanted_ports
+from ..viewer.wanted import A, find_visible_region, list_wanted_ports, list_whole_sides
 
 if TYPE_CHECKING:
     from ...authoring.session import Session
@@ -28,14 +29,15 @@ FRAME_BUDGET = 0.012
 """Seconds of rendering per frame of the window: the rest of a sixtieth of a second is for drawing panels."""
 
 PLAY_BUDGET = 0.030
-"""Seconds of rendering per frame of the window during playback, when panels hardly change."""
+"""Seconds of rendering per frame of the window during playback, when panels hardly change, and while a stroke
+follows the pointer."""
 
 _DELETED: Mapping[Kind, str] = MappingProxyType(
     {
-        "graph": "saving writes it again",
-        "group": "the group stays as it was read",
-        "picture": "put it back, or choose another file",
-        "code": "the code stays as it was read; saving writes it again",
+        "graph": mark("saving writes it again"),
+        "group": mark("the group stays as it was read"),
+        "picture": mark("put it back, or choose another file"),
+        "code": mark("the code stays as it was read; saving writes it again"),
     }
 )
 """What follows for the user from a file that is gone, by what it holds."""
@@ -76,7 +78,11 @@ class FrameUpdater:
     def _report_faults(self) -> None:
         """Log once what services cannot do; Problems shows it for as long as it lasts."""
         editor = self._editor
-        refused = {f"The plug-in {plugin} cannot be loaded: {plugin.fault}" for plugin in plugins() if plugin.fault}
+        refused = {
+            translate("The plug-in {plugin} cannot be loaded: {fault}", plugin=plugin, fault=plugin.fault)
+            for plugin in plugins()
+            if plugin.fault
+        }
         services = service_faults(self._contexts.problems)
         faults = {*services, *refused, self._find_memory_fault()} - {""}
         for sentence in sorted(faults - self._reported):
@@ -89,9 +95,11 @@ class FrameUpdater:
         self._seconds_over_budget = self._seconds_over_budget + 1 if used > budget else 0
         if self._seconds_over_budget < OVER_BUDGET:
             return ""
-        return (
-            f"the pictures of this graph need more memory than the budget of {budget / 2**20:.0f} MiB, so nothing is "
-            "kept: raise the budget in the preferences, or choose a smaller proxy in the viewer"
+        return translate(
+            "the pictures of this graph need more memory than the budget of {megabytes:.0f} MiB, so "
+            "nothing is kept: raise the budget in the preferences, or choose a smaller proxy in the "
+            "viewer",
+            megabytes=budget / 2**20,
         )
 
     def _compute(self) -> None:
@@ -105,8 +113,10 @@ class FrameUpdater:
         preview.glimpse = find_visible_region(context)
         place = session.place
         flat = {name: Port("/".join((*place, port.node)), port.socket) for name, port in ports.items()}
-        preview.want(session.root, flat, bindings=session.bindings, scale=scale, frame=session.time.frame)
-        self.is_working = preview.work(PLAY_BUDGET if editor.timeline.playing else FRAME_BUDGET)
+        whole, frame = list_whole_sides(context), session.time.frame
+        preview.want(session.root, flat, bindings=session.bindings, scale=scale, frame=frame, whole=whole)
+        is_urgent = editor.timeline.playing or editor.viewer.brush.stroke != ""
+        self.is_working = preview.work(PLAY_BUDGET if is_urgent else FRAME_BUDGET)
         self.is_working = self._run_passes(flat, scale) or self.is_working
 
     def _run_passes(self, ports: Mapping[str, Port], scale: float) -> bool:
@@ -156,8 +166,11 @@ class FrameUpdater:
     def _take_change(self, change: FileChange) -> None:
         """Read a file again after another program wrote it."""
         editor = self._editor
-        if not change.exists and (consequence := _DELETED.get(change.kind)):
-            editor.log.add(f"{change.path.name} was deleted or moved: {consequence}", "warning")
+        if not change.exists and (consequence := translate(_DELETED.get(change.kind, ""))):
+            editor.log.add(
+                translate("{name} was deleted or moved: {consequence}", name=change.path.name, consequence=consequence),
+                "warning",
+            )
             if change.kind == "picture":
                 editor.preview.refresh()
                 editor.session.time.remeasure()
@@ -170,15 +183,15 @@ class FrameUpdater:
             case "picture":
                 editor.preview.refresh()
                 editor.session.time.remeasure()
-                editor.log.add(f"{change.path.name} changed on disk and was read again")
+                editor.log.add(translate("{name} changed on disk and was read again", name=change.path.name))
             case "code":
                 self._contexts.code_files.reread(change.path)
             case "shader":
                 editor.preview.reload(reload_library())
-                editor.log.add(f"shader {change.path.name} was loaded again")
+                editor.log.add(translate("shader {name} was loaded again", name=change.path.name))
             case "node":
                 if fault := self._nodes.reload():
                     editor.log.add(fault, "error")
                 else:
                     editor.session.migrate(migrate_graph)
-                    editor.log.add(f"node {change.path.name} was loaded again")
+                    editor.log.add(translate("node {name} was loaded again", name=change.path.name))

@@ -7,6 +7,8 @@ from collections.abc import Callable
 
 from imgui_bundle import imgui
 
+from ...language.translation import translate
+from ..toolkit.labels import translate_label
 from .editor import Editor
 
 
@@ -20,7 +22,12 @@ def draw_guarded(editor: Editor, name: str, draw: Callable[[], object]) -> bool:
         _recover(state)
         if name not in editor.faults:
             editor.log.add(
-                f"the panel {name} failed ({type(error).__name__}: {error}); the document is safe",
+                translate(
+                    "the panel {name} failed ({kind}: {error}); the document is safe",
+                    name=name,
+                    kind=type(error).__name__,
+                    error=error,
+                ),
                 "error",
                 traceback.format_exc(),
             )
@@ -48,6 +55,8 @@ def _recover(state: imgui.internal.ErrorRecoveryState) -> None:
 
 def draw_failure(editor: Editor, name: str) -> None:
     """Draw the message in place of a failed panel."""
-    imgui.text_wrapped(f"{name} could not be drawn. The document is safe; Problems has the details.")
-    if imgui.button("Try again"):
+    imgui.text_wrapped(
+        translate("{name} could not be drawn. The document is safe; Problems has the details.", name=name)
+    )
+    if imgui.button(translate_label("Try again")):
         editor.faults.pop(name, None)

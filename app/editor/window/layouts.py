@@ -9,6 +9,7 @@ from types import MappingProxyType
 from imgui_bundle import hello_imgui, imgui
 
 from ..shared.window_commands import LayoutName, PanelTitle
+from ..toolkit.labels import make_label
 from .panels import DOCKED
 
 MAIN = "MainDockSpace"
@@ -88,6 +89,11 @@ LAYOUTS: Mapping[LayoutName, DockLayout] = MappingProxyType(
 )
 
 
+def find_panel(params: hello_imgui.RunnerParams, title: PanelTitle) -> hello_imgui.DockableWindow:
+    """What the host of the window knows of a panel; its label there is the identity, which no language changes."""
+    return params.docking_params.dockable_window_of_name(make_label("", title))
+
+
 def make_splits(layout: DockLayout) -> list[hello_imgui.DockingSplit]:
     """The splits of a layout, as the host of the window takes them."""
     return [hello_imgui.DockingSplit(*split, _NODE) for split in layout.splits]
@@ -98,7 +104,7 @@ def apply_layout(params: hello_imgui.RunnerParams, layout: DockLayout) -> None:
     docking = params.docking_params
     docking.docking_splits = make_splits(layout)
     for docked in DOCKED:
-        panel = docking.dockable_window_of_name(docked.title)
+        panel = find_panel(params, docked.title)
         panel.dock_space_name = layout.find_dock(docked.title, docked.dock)
         panel.is_visible = docked.title not in layout.hidden
     docking.layout_reset = True

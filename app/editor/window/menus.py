@@ -10,6 +10,7 @@ from ..actions import MENUS
 from ..shared.action import Action, ListedAction
 from ..shared.window_commands import PanelTitle
 from ..toolkit.buttons import ActionSurface, entry
+from ..toolkit.labels import translate_label
 
 
 @dataclass
@@ -32,12 +33,12 @@ class MenuBar:
             self._actions = context.actions.all
             self._menus = arrange_menus(self._actions)
         for name, menu in self._menus.items():
-            if imgui.begin_menu(name):
+            if imgui.begin_menu(translate_label(name, "menu")):
                 draw_menu(context, menu)
                 if name == "View":
                     imgui.separator()
                     for title, visible in panels.items():
-                        clicked, _ = imgui.menu_item(title, "", visible)
+                        clicked, _ = imgui.menu_item(translate_label(title), "", visible)
                         if clicked:
                             panels[title] = not visible
                 imgui.end_menu()
@@ -66,7 +67,7 @@ def draw_menu(context: ActionSurface, menu: _Menu) -> None:
             first = next(iter(item.entries.values()), None)
             if isinstance(first, Action) and first.separated:
                 imgui.separator()
-            if imgui.begin_menu(name):
+            if imgui.begin_menu(translate_label(name, "menu")):
                 draw_menu(context, item)
                 imgui.end_menu()
             continue

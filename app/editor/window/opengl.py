@@ -10,10 +10,12 @@ from imgui_bundle import hello_imgui  # noqa: F401  (first: both must use the sa
 import glfw  # isort: skip
 
 from ...errors import DeviceError
+from ...language.translation import mark, translate
 from ...resources.machine import suggest_driver
 
 _VERSIONS = ((4, 5), (4, 3), (4, 1))
-_NO_WINDOW = (
+"""With all that is used, with compute shaders, and what macOS has."""
+_NO_WINDOW = mark(
     "no window can be opened here: the editor needs a display (over ssh, connect with -X); "
     "'halation render' works without one"
 )
@@ -37,7 +39,10 @@ def best_version() -> tuple[int, int]:
             glfw.terminate()
     if version is None:
         raise DeviceError(
-            f"no window with OpenGL 4.1 can be opened here: {suggest_driver()}; 'halation render' may still work"
+            translate(
+                "no window with OpenGL 4.1 can be opened here: {advice}; 'halation render' may still work",
+                advice=suggest_driver(),
+            )
         )
     if not visible:
         needs_no_display()

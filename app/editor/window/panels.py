@@ -22,6 +22,7 @@ from ..inspector.inspector import Inspector
 from ..library.dialog import PresetDialog
 from ..log.panel import LogPanel
 from ..log.toasts import Toasts
+from ..matching.window import MatchWindow
 from ..passes.panel import PassesPanel
 from ..preferences.dialog import PreferencesDialog
 from ..problems.panel import ProblemsPanel
@@ -72,6 +73,7 @@ OVERLAYS: tuple[tuple[str, Callable[[Contexts], Panel]], ...] = (
     ("Panel", lambda contexts: PanelPage(contexts.dialogs)),
     ("Preferences", lambda contexts: PreferencesDialog(contexts.preferences)),
     ("Export", lambda contexts: ExportDialog(contexts.exporting)),
+    ("Match", lambda contexts: MatchWindow(contexts.matching)),
     ("Save as preset", lambda contexts: PresetDialog(contexts.presets)),
     ("Command palette", lambda contexts: CommandPalette(contexts.command_palette)),
     ("Files", lambda contexts: FileBrowser(contexts.browser)),

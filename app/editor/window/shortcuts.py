@@ -55,3 +55,4 @@ _TAKEN = (imgui.Key.space, imgui.Key.left_arrow, imgui.Key.right_arrow, imgui.Ke
 """Keys that the library would use for buttons, if actions did not take them."""
 
 _OURS = 0x48414C41
+"""The id under which the window owns keys: "HALA" in ASCII."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...language.translation import translate, translate_plural
 from ..theme.style import EM, vec4
 from ..toolkit.places import record
 from ..toolkit.words import cut_end, draw_dim, font, level_color
@@ -69,14 +70,20 @@ def _figures(editor: Editor) -> str:
     used, budget = editor.preview.memory
     computed, total = editor.preview.progress
     count = len(editor.session.graph.nodes)
-    parts = [f"{count} node{'' if count == 1 else 's'}", f"{used / 2**20:.0f} of {budget / 2**20:.0f} MiB"]
+    parts = [
+        translate_plural("{count} node", "{count} nodes", count),
+        translate("{used:.0f} of {budget:.0f} MiB", used=used / 2**20, budget=budget / 2**20),
+    ]
     if editor.preview.paused:
-        parts.insert(0, f"{icons.ICON_FA_PAUSE} paused")
+        parts.insert(0, f"{icons.ICON_FA_PAUSE} {translate('paused')}")
     elif lead := editor.preview.lead:
-        parts.insert(0, f"{'pre-roll' if lead[0] == 'pre-roll' else 'planning'} {lead[1]} of {lead[2]}")
+        words = translate("planning {done} of {total}", done=lead[1], total=lead[2])
+        if lead[0] == "pre-roll":
+            words = translate("pre-roll {done} of {total}", done=lead[1], total=lead[2])
+        parts.insert(0, words)
     elif (picture := editor.preview.find_visible_image(A)) and picture.partial:
         width, height = picture.texture.size
-        parts.insert(0, f"region {width}\u00d7{height}")
+        parts.insert(0, translate("region {width}\u00d7{height}", width=width, height=height))
     elif editor.preview.busy:
-        parts.insert(0, f"pass {computed} of {total}")
+        parts.insert(0, translate("pass {done} of {total}", done=computed, total=total))
     return "   ".join(parts)

@@ -5,21 +5,22 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
-from typing import Any
 
-from imgui_bundle import ImVec2, glfw_utils, hello_imgui, imgui
+from imgui_bundle import ImVec2, hello_imgui, imgui
 
 import glfw  # isort: skip
 
 from ...compiler import Form
+from ...language.translation import translate
 from ...renderer.opening import adopt_window
 from ...resources.sandbox import Sandbox
 from ..shared.dialogs import Browse
 from ..shared.window_commands import PanelTitle
 from ..theme import fonts, style
-from ..theme.palette import Palette
 from ..timeline.timeline import HEIGHT, Timeline
+from ..toolkit.labels import make_label, translate_label
 from ..toolkit.places import Rect
+from .appearance import Appearance, find_host
 from .assembly import assemble, open_first, take_apart
 from .contexts import Contexts, compose_contexts
 from .dock_shares import DockShares
@@ -29,7 +30,7 @@ from .frame_updater import FrameUpdater
 from .full_screen import FullScreen, begin_filling, find_pointed_panel
 from .guard import draw_failure, draw_guarded, enable_error_recovery
 from .input_events import InputQueue
-from .layouts import LAYOUTS, apply_layout, make_splits
+from .layouts import LAYOUTS, apply_layout, find_panel, make_splits
 from .menus import MenuBar
 from .painting import RESIZED, WindowPainter, measure_window
 from .panels import DOCKED, OVERLAYS, Docked, Panel
@@ -85,9 +86,8 @@ class Window:
         self._docks = DockShares(lambda name: self.params.docking_params.dock_space_id_from_name(name))
         self._dropped: list[str] = []
         self._input = InputQueue()
-        self._title = ""
         self._fronted: set[str] = set()
-        self._styled: tuple[Palette, float, tuple[float, ...]] | None = None
+        self._appearance = Appearance()
         self._layout = LAYOUTS["composite"]
         self.params = self._make_params(version, size)
         self._menu_bar = MenuBar()
@@ -138,7 +138,9 @@ class Window:
         return params
 
     def _dockable(self, docked: Docked) -> hello_imgui.DockableWindow:
-        dockable = hello_imgui.DockableWindow(docked.title, docked.dock, partial(self._draw_panel, docked))
+        dockable = hello_imgui.DockableWindow(
+            make_label("", docked.title), docked.dock, partial(self._draw_panel, docked)
+        )
         dockable.include_in_view_menu = dockable.call_begin_end = False
         return dockable
 
@@ -168,9 +170,9 @@ class Window:
             self.editor.actions.run(self._first_action)
         imgui.get_io().config_flags |= int(imgui.ConfigFlags_.nav_enable_keyboard)
         imgui.get_io().config_drag_click_to_input_text = True
-        self._input.connect(_host())
-        glfw.set_window_refresh_callback(_host(), lambda _: self._painter.redraw_all(RESIZED))
-        glfw.set_drop_callback(_host(), lambda _, paths: self._dropped.extend(paths))  # pyright: ignore
+        self._input.connect(find_host())
+        glfw.set_window_refresh_callback(find_host(), lambda _: self._painter.redraw_all(RESIZED))
+        glfw.set_drop_callback(find_host(), lambda _, paths: self._dropped.extend(paths))  # pyright: ignore
 
     def _load_fonts(self) -> None:
         """Comes after `_begin`."""
@@ -204,7 +206,8 @@ class Window:
             return
         editor = self.editor
         self.frames += 1
-        self._restyle()
+        if self._appearance.follow(self.editor):
+            self._painter.redraw_all()
         self._docks.follow_window()
         editor.interface.pointed_panel = find_pointed_panel(editor.places)
         if self._filling is None:
@@ -231,7 +234,7 @@ class Window:
         self._rest()
 
     def _draw_menus(self) -> None:
-        windows = {docked.title: self.params.docking_params.dockable_window_of_name(docked.title) for docked in DOCKED}
+        windows = {docked.title: find_panel(self.params, docked.title) for docked in DOCKED}
         visible = {title: window.is_visible for title, window in windows.items()}
         draw_guarded(self.editor, "Menus", lambda: self._menu_bar.draw(self._contexts.dialogs, visible))
         for title, is_shown in visible.items():
@@ -244,7 +247,8 @@ class Window:
         self._draw_inside("Timeline")
 
     def _draw_panel(self, docked: Docked) -> None:
-        host = self.params.docking_params.dockable_window_of_name(docked.title)
+        host = find_panel(self.params, docked.title)
+        label = translate_label(docked.title)
         if docked.bare:
             imgui.push_style_var(imgui.StyleVar_.window_padding, (0.0, 0.0))
         if docked.title in self._fronted:  # the library only does so for windows that it begins itself
@@ -253,7 +257,7 @@ class Window:
         if docked.title == self._filling:
             is_seen = begin_filling(docked.title, self._find_dock_area(), _BARE if docked.bare else 0)
         else:
-            is_seen, stays = imgui.begin(docked.title, host.is_visible, _BARE if docked.bare else 0)
+            is_seen, stays = imgui.begin(label, host.is_visible, _BARE if docked.bare else 0)
             host.is_visible = bool(stays)
         if docked.bare:
             imgui.pop_style_var()
@@ -300,20 +304,6 @@ class Window:
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
-    def _restyle(self) -> None:
-        likes = self.editor.store.current
-        imgui.get_io().config_input_text_cursor_blink = not likes.reduced_motion
-        scale = likes.ui_scale or hello_imgui.dpi_window_size_factor()
-        # The host scales the style too: behind the first frame, and where the window moves to another display.
-        if self._styled != (self.editor.palette, scale, style.measure_style()):
-            style.apply(self.editor.palette, scale)
-            self._styled = (self.editor.palette, scale, style.measure_style())
-        session = self.editor.session
-        title = f"{'* ' if session.dirty else ''}{session.name} - Halation"
-        if title != self._title:
-            self._title = title
-            glfw.set_window_title(_host(), title)
-
     def _rest(self) -> None:
         """Say how often the next frames come."""
         editor, time_now = self.editor, imgui.get_time()
@@ -325,7 +315,7 @@ class Window:
 
     def _serve_commands(self) -> None:
         """Do what panels and actions asked the window to do."""
-        commands, docking = self.editor.commands, self.params.docking_params
+        commands = self.editor.commands
         if commands.layout is not None:
             self._restore_panels()
             self._layout, commands.layout = LAYOUTS[commands.layout], None
@@ -352,7 +342,7 @@ class Window:
             others = (title for title in self._front_again if docks[title] not in new_docks)
             self._front_again = (*others, *commands.panels)
         for title in commands.panels:
-            docking.dockable_window_of_name(title).is_visible = True
+            find_panel(self.params, title).is_visible = True
             self._fronted.add(title)
         commands.panels.clear()
 
@@ -360,7 +350,7 @@ class Window:
         """Hide all panels but one, or show again those that were hidden for one."""
         if self._restore_panels():
             return
-        panels = {docked.title: self.params.docking_params.dockable_window_of_name(docked.title) for docked in DOCKED}
+        panels = {docked.title: find_panel(self.params, docked.title) for docked in DOCKED}
         self._filling = title
         self._hidden = tuple(name for name, panel in panels.items() if panel.is_visible and name != title)
         for name in self._hidden:
@@ -375,7 +365,7 @@ class Window:
             self._front_again, self._front_at = tuple(sorted(self._front)), self.frames + _APPEARING
         was_filling, self._filling = self._filling is not None, None
         for name in hidden:
-            self.params.docking_params.dockable_window_of_name(name).is_visible = True
+            find_panel(self.params, name).is_visible = True
         return was_filling
 
     def _screenshot(self) -> None:
@@ -383,17 +373,12 @@ class Window:
         pixels = self.device.read_window(measure_window())
         self._painter.redraw_all()
         self.editor.dialogs.browse = Browse(
-            "Save a screenshot",
+            translate("Save a screenshot"),
             "export",
             lambda path: self.editor.log.attempt(lambda: save_screenshot(path, pixels)),
             saving=True,
             name="halation.png",
         )
-
-
-def _host() -> Any:
-    """The window itself; the types of its library are wrong about it."""
-    return glfw_utils.glfw_window_hello_imgui()
 
 
 def _draw_nothing() -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from ...authoring.commands import EmbedCode
+from ...language.translation import translate
 from ..shared.action import Action
 from ..shared.dialogs import Browse, Question
 from ..shared.window_commands import PanelTitle
@@ -68,14 +69,14 @@ class CodeFileWorkflow:
         """Write the code of a node to its file. Raises OutputError."""
         path = self.session.code_files.save(id)
         self.watcher.expect(path)
-        self.log.add(f"saved {path.name}")
+        self.log.add(translate("saved {name}", name=path.name))
 
     def save_drafts(self) -> None:
         """Write all code that differs from its file, as when its graph is saved. Raises OutputError."""
         self.editor.flush()
         for path in self.session.code_files.save_drafts():
             self.watcher.expect(path)
-            self.log.add(f"saved {path.name}")
+            self.log.add(translate("saved {name}", name=path.name))
 
     def export(self, id: str) -> None:
         """Ask for a file, write the code of a node to it, and let the node read it from there."""
@@ -91,27 +92,29 @@ class CodeFileWorkflow:
 
             self.log.attempt(export)
 
-        self.dialogs.browse = Browse("Move the code to a file", "code", save, saving=True, name=f"{id}{ending}")
+        self.dialogs.browse = Browse(
+            translate("Move the code to a file"), "code", save, saving=True, name=f"{id}{ending}"
+        )
 
     def reread(self, path: Path) -> None:
         """Read a file of code again after another program wrote it; ask first if its draft differs."""
 
         def load() -> None:
             self.session.code_files.reread(path)
-            self.log.add(f"{path.name} changed on disk and was loaded again")
+            self.log.add(translate("{name} changed on disk and was loaded again", name=path.name))
 
         def keep() -> None:
             self.session.code_files.keep_draft(path)
-            self.log.add("your changes are kept; saving will replace the file on disk")
+            self.log.add(translate("your changes are kept; saving will replace the file on disk"))
 
         self.editor.flush()
         if not self.session.code_files.differs_from_disk(path):
             load()
             return
         self.dialogs.question = Question(
-            "Changed on disk",
-            f"{path.name} was changed by another program, and you have unsaved changes.",
-            (("Load theirs", lambda: self.log.attempt(load)), ("Keep mine", keep)),
+            translate("Changed on disk"),
+            translate("{name} was changed by another program, and you have unsaved changes.", name=path.name),
+            ((translate("Load theirs"), lambda: self.log.attempt(load)), (translate("Keep mine"), keep)),
         )
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from ...authoring.document_pictures import DocumentPictures
 from ...errors import HalationError
+from ...language.translation import translate, translate_plural
 from ...media.pictures.file_endings import is_picture
 from ...renderer.provenance.recipe import has_recipe
 from ...resources.sandbox import Sandbox
@@ -40,6 +41,18 @@ def has_graph(path: Path, sandbox: Sandbox) -> bool:
 
 def _do_nothing() -> None:
     """An answer that changes nothing."""
+
+
+@dataclass(frozen=True)
+class LeavingLabels:
+    """What the answers are called when unsaved work is about to be left: with saving it, and without."""
+
+    saving: str
+    losing: str
+
+
+def _label_opening() -> LeavingLabels:
+    return LeavingLabels(translate("Save and open"), translate("Open without saving"))
 
 
 @dataclass(frozen=True)
@@ -83,7 +96,10 @@ class DocumentWorkflow:
 
     def ask_for_new(self) -> None:
         """Start an empty graph, after asking about unsaved work."""
-        self._unless_unsaved(self.start_new, "start a new graph")
+        self._unless_unsaved(
+            self.start_new,
+            LeavingLabels(translate("Save and start a new graph"), translate("Start a new graph without saving")),
+        )
 
     def start_new(self) -> None:
         """Start an empty graph."""
@@ -92,11 +108,11 @@ class DocumentWorkflow:
 
     def ask_for_graph(self) -> None:
         """Ask for a graph or a picture, and open it."""
-        self.dialogs.browse = Browse("Open a graph or a picture", "graph", self.open_file, has_pictures=True)
+        self.dialogs.browse = Browse(translate("Open a graph or a picture"), "graph", self.open_file, has_pictures=True)
 
     def ask_for_render(self) -> None:
         """Ask for a render, a picture or a sequence, and start a graph that reads it."""
-        self.dialogs.browse = Browse("Open a render or a picture", "image", self.open_file)
+        self.dialogs.browse = Browse(translate("Open a render or a picture"), "image", self.open_file)
 
     def open_file(self, path: Path) -> None:
         """Open a graph, or a picture; of one that Halation rendered the user says whether its graph is meant."""
@@ -115,14 +131,17 @@ class DocumentWorkflow:
             self._show_document()
             then()
 
-        self._unless_unsaved(lambda: self.log.attempt(open_reader), "open")
+        self._unless_unsaved(lambda: self.log.attempt(open_reader), _label_opening())
 
     def ask_graph_or_picture(self, path: Path, read: Callable[[], object]) -> None:
         """Ask what a picture of ours is wanted for: its graph, or its pixels."""
         self.dialogs.question = Question(
-            "Rendered by Halation",
-            f"{path.name} holds the graph that made it.",
-            (("Open its graph", lambda: self.open_graph_of_picture(path)), ("Read it as a picture", read)),
+            translate("Rendered by Halation"),
+            translate("{name} holds the graph that made it.", name=path.name),
+            (
+                (translate("Open its graph"), lambda: self.open_graph_of_picture(path)),
+                (translate("Read it as a picture"), read),
+            ),
         )
 
     def open_graph(self, path: Path) -> None:
@@ -133,7 +152,7 @@ class DocumentWorkflow:
             self.store.note_opened(path)
             self._show_document()
 
-        self._unless_unsaved(lambda: self.log.attempt(open_file), "open")
+        self._unless_unsaved(lambda: self.log.attempt(open_file), _label_opening())
 
     def open_preset(self, path: Path, then: Callable[[], object] = _do_nothing) -> None:
         """Open a preset as a new document, after asking about unsaved work."""
@@ -143,7 +162,10 @@ class DocumentWorkflow:
             self._show_document()
             then()
 
-        self._unless_unsaved(lambda: self.log.attempt(open_copy), "open the preset")
+        self._unless_unsaved(
+            lambda: self.log.attempt(open_copy),
+            LeavingLabels(translate("Save and open the preset"), translate("Open the preset without saving")),
+        )
 
     def open_graph_of_picture(self, path: Path) -> None:
         """Open the graph that rendered a picture as a new document, after asking about unsaved work."""
@@ -151,9 +173,12 @@ class DocumentWorkflow:
         def open_recipe() -> None:
             self.session.files.open_graph_of_picture(path)
             self._show_document()
-            self.log.add(f"the graph of {path.name}, as a new document")
+            self.log.add(translate("the graph of {name}, as a new document", name=path.name))
 
-        self._unless_unsaved(lambda: self.log.attempt(open_recipe), "open the graph")
+        self._unless_unsaved(
+            lambda: self.log.attempt(open_recipe),
+            LeavingLabels(translate("Save and open the graph"), translate("Open the graph without saving")),
+        )
 
     def recover(self, recovered: RecoveredWork) -> None:
         """Open work that was not saved, after asking about other unsaved work."""
@@ -163,7 +188,8 @@ class DocumentWorkflow:
             self.recovery.adopt(recovered, self.session.sandbox)
             self._show_document()
 
-        self._unless_unsaved(lambda: self.log.attempt(restore), "recover")
+        labels = LeavingLabels(translate("Save and recover"), translate("Recover without saving"))
+        self._unless_unsaved(lambda: self.log.attempt(restore), labels)
 
     # --- saving ------------------------------------------------------------------------------------------------------
 
@@ -179,16 +205,16 @@ class DocumentWorkflow:
             self.session.files.save()
             self._keep_picture(path)
             self.watcher.expect(path)
-            self.log.add(f"saved {path.name}")
+            self.log.add(translate("saved {name}", name=path.name))
             then()
 
         if not self.watcher.differs(path):
             write()
             return
         self.dialogs.question = Question(
-            "Changed on disk",
-            f"{path.name} was changed by another program since you opened it.",
-            (("Replace it", lambda: self.log.attempt(write)), ("Cancel", _do_nothing)),
+            translate("Changed on disk"),
+            translate("{name} was changed by another program since you opened it.", name=path.name),
+            ((translate("Replace it"), lambda: self.log.attempt(write)), (translate("Cancel"), _do_nothing)),
         )
 
     def save_as(self, then: Callable[[], object] = _do_nothing) -> None:
@@ -203,34 +229,40 @@ class DocumentWorkflow:
                 self.watcher.expect(target)
                 self.store.note_opened(target)
                 self._keep_picture(target)
-                self.log.add(f"saved {target.name}")
+                self.log.add(translate("saved {name}", name=target.name))
                 then()
 
             self.log.attempt(write)
 
         name = f"{self.session.name}.json"
-        self.dialogs.browse = Browse("Save the graph as", "graph", save, saving=True, name=name)
+        self.dialogs.browse = Browse(translate("Save the graph as"), "graph", save, saving=True, name=name)
 
     def revert(self) -> None:
         """Go back to the saved file, after asking."""
         self.dialogs.question = Question(
-            "Revert",
-            "Go back to the last saved version? This can be undone.",
-            (("Revert", lambda: self.log.attempt(self.session.files.revert)), ("Cancel", _do_nothing)),
+            translate("Revert"),
+            translate("Go back to the last saved version? This can be undone."),
+            (
+                (translate("Revert"), lambda: self.log.attempt(self.session.files.revert)),
+                (translate("Cancel"), _do_nothing),
+            ),
         )
 
     def load_changed_file(self, path: Path) -> None:
         """Load the document's file again after another program wrote it; ask first if there is unsaved work."""
         if not self.session.dirty:
             self.session.files.reload()
-            self.log.add(f"{path.name} changed on disk and was loaded again")
+            self.log.add(translate("{name} changed on disk and was loaded again", name=path.name))
             return
         self.dialogs.question = Question(
-            "Changed on disk",
-            f"{path.name} was changed by another program, and you have unsaved changes.",
+            translate("Changed on disk"),
+            translate("{name} was changed by another program, and you have unsaved changes.", name=path.name),
             (
-                ("Load theirs", lambda: self.log.attempt(self.session.files.reload)),
-                ("Keep mine", lambda: self.log.add("your changes are kept; saving will replace the file on disk")),
+                (translate("Load theirs"), lambda: self.log.attempt(self.session.files.reload)),
+                (
+                    translate("Keep mine"),
+                    lambda: self.log.add(translate("your changes are kept; saving will replace the file on disk")),
+                ),
             ),
         )
 
@@ -238,7 +270,11 @@ class DocumentWorkflow:
 
     def quit(self) -> None:
         """Close the window, after asking about renders that run and about unsaved work."""
-        self._unless_rendering(lambda: self._unless_unsaved(self.commands.close, "quit"))
+        self._unless_rendering(
+            lambda: self._unless_unsaved(
+                self.commands.close, LeavingLabels(translate("Save and quit"), translate("Quit without saving"))
+            )
+        )
 
     def ask_to_close(self) -> bool:
         """True if the window may close now; else a question is open."""
@@ -246,18 +282,18 @@ class DocumentWorkflow:
             self.quit()
         return self.commands.closing
 
-    def _unless_unsaved(self, then: Callable[[], object], verb: str) -> None:
+    def _unless_unsaved(self, then: Callable[[], object], labels: LeavingLabels) -> None:
         """Ask before unsaved work is left behind."""
         if not self.session.dirty:
             then()
             return
         self.dialogs.question = Question(
-            "Unsaved changes",
-            f"'{self.session.name}' has unsaved changes.",
+            translate("Unsaved changes"),
+            translate("'{name}' has unsaved changes.", name=self.session.name),
             (
-                (f"Save and {verb}", lambda: self.save(then)),
-                (f"{verb.capitalize()} without saving", then),
-                ("Cancel", _do_nothing),
+                (labels.saving, lambda: self.save(then)),
+                (labels.losing, then),
+                (translate("Cancel"), _do_nothing),
             ),
         )
 
@@ -267,12 +303,19 @@ class DocumentWorkflow:
         if not count:
             then()
             return
-        renders = "A render is" if count == 1 else f"{count} renders are"
         self.dialogs.question = Question(
-            "Renders are not finished",
-            f"{renders} not finished. Finished frames are kept, and Resume continues from there.",
-            (("Stop rendering and quit", then), ("Cancel", _do_nothing)),
+            translate("Renders are not finished"),
+            translate_plural(
+                "A render is not finished. Finished frames are kept, and Resume continues from there.",
+                "{count} renders are not finished. Finished frames are kept, and Resume continues from there.",
+                count,
+            ),
+            ((translate("Stop rendering and quit"), then), (translate("Cancel"), _do_nothing)),
         )
+
+    def open_match(self) -> None:
+        """Open the window that matches a reference."""
+        self.dialogs.matches = True
 
     def _keep_picture(self, path: Path) -> None:
         """Keep what the viewer shows as the picture of the document, for the start screen."""
@@ -323,6 +366,14 @@ DOCUMENTS: tuple[Action[DocumentWorkflow], ...] = (
         "File",
         doc="Write the graph for programs that know nothing of Halation: a web page, passes of GLSL, an ISF shader, or "
         "a table of colors.",
+    ),
+    Action(
+        "file.match",
+        "Match a Reference...",
+        DocumentWorkflow.open_match,
+        "File",
+        contexts=frozenset({"node"}),
+        doc="Find values that make the picture like another one: the same frame graded elsewhere, or a look.",
     ),
     Action("file.quit", "Quit", DocumentWorkflow.quit, "File", "Ctrl+Q", separated=True),
 )

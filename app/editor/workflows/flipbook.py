@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from ...authoring.flipbook import Flipbook, FlipbookStrip
+from ...language.translation import translate
 from ..shared.action import Action
 from ..shared.dialogs import Browse
 from ..shared.window_commands import PanelTitle
@@ -73,7 +74,7 @@ class FlipbookPlayer:
             strip = FlipbookStrip.from_file(path, sandbox=self.stage.document.sandbox)
             self.open(*(first, strip) if first else (strip,))
 
-        title = f"Compare {first.name} with" if first else "Play pictures"
+        title = translate("Compare {name} with", name=first.name) if first else translate("Play pictures")
         self.dialogs.browse = Browse(title, "image", play)
 
     def choose_other(self) -> None:

@@ -1,0 +1,1 @@
+"""The window that finds values which make the picture like a reference."""
