@@ -2,9 +2,9 @@
 
 By the imports in the code, without running anything: a test file covers the modules that it imports, what a package
 among them hands on, and what those modules import themselves. It also covers the file of its own name in the room of
-its own name (in quick rooms the whole room), the shaders of the nodes that it covers, its helpers and its fixtures.
-Commands and panels reach far more than that through other modules, so this is for a save, and everything is for a
-commit.
+its own name (in quick rooms the whole room), the shaders of the nodes that it covers, its helpers and its fixtures. Of
+the tests that try all nodes, the cases of a changed node run. Commands and panels reach far more than that through
+other modules, so this is for a save, and everything is for a commit.
 """
 
 from __future__ import annotations
@@ -41,6 +41,27 @@ def list_changes(root: Path = ROOT) -> frozenset[Path]:
 def covers(test: Path, changes: Collection[Path]) -> bool:
     """True if a test file covers one of the files."""
     return not set(changes).isdisjoint(_list_covered(test))
+
+
+def name_changed_nodes(changes: Collection[Path], root: Path = ROOT) -> frozenset[str]:
+    """The ids of built-in nodes whose class or shader is among the files."""
+    places = (path.relative_to(root).parts for path in changes if path.is_relative_to(root))
+    stems = (
+        Path(*parts[1:]).with_suffix("") for parts in places if len(parts) == 3 and parts[0] in ("nodes", "shaders")
+    )
+    return frozenset(stem.name for stem in stems if (root / "nodes" / stem).with_suffix(".py").is_file())
+
+
+@cache
+def tries_all_nodes(test: Path) -> bool:
+    """True for a file with tests that have a case for each node."""
+    text = test.read_text("utf-8")
+    return "parametrize" in text and re.search(r"\b(catalogue|built_in_nodes)\(\)", text) is not None
+
+
+def is_case_of(test: str, ids: Collection[str]) -> bool:
+    """True for the name of a test whose case has the id of one of these nodes: `test_it[bloom]`."""
+    return not set(ids).isdisjoint(test.partition("[")[2].removesuffix("]").split("-"))
 
 
 @cache

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import os
 from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
@@ -15,6 +16,8 @@ from halation.renderer import Renderer, RenderRequest
 from hypothesis import HealthCheck, settings
 
 pytest_plugins = ["selection", "children", "costs", "failures", "skips", "time_limits"]
+
+os.environ["LANGUAGE"] = "en"  # tests name what they see in English, whatever the language of the machine
 
 # A busy machine is no fault of what is tested: examples may take as long as they take.
 settings.register_profile("halation", deadline=None, suppress_health_check=[HealthCheck.too_slow])

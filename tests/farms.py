@@ -98,9 +98,12 @@ def start_dask(words: list[str], folder: Path, variables: dict[str, str]) -> int
 
 
 def end_group(group: int) -> None:
-    """Kill all processes of a group."""
+    """Kill all processes of a group, and wait a moment until they are gone."""
     with contextlib.suppress(ProcessLookupError):
         os.killpg(group, signal.SIGKILL)
+        for _ in range(50):
+            time.sleep(0.02)
+            os.killpg(group, 0)
 
 
 def find_port() -> int:

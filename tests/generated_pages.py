@@ -20,6 +20,7 @@ from halation.graph.expressions.functions import FUNCTIONS
 from halation.lint.checking import RULES
 from halation.nodes import LIGHTS, built_in_nodes
 from menu_words import PROGRAMS
+from message_catalogue import renew_catalogue
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = MappingProxyType(
@@ -155,6 +156,8 @@ def main() -> None:
         if not path.is_file() or path.read_text(encoding="utf-8") != text:
             path.write_text(text, encoding="utf-8")
             print(f"{page} is renewed")
+    for page in renew_catalogue():
+        print(f"{page} is renewed")
 
 
 if __name__ == "__main__":

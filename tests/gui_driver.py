@@ -180,6 +180,11 @@ class Ui:
             self.ctx.key_press(chord("Enter"))
         self.wait(3)
 
+    def show_panel(self, title: str) -> None:
+        """Bring a docked panel to the front."""
+        self.ctx.window_focus(f"//{title}")
+        self.wait(4)
+
     def shot(self, name: str) -> Path:
         """A screenshot; kept in HALATION_SHOTS if that is set."""
         shots_folder = os.environ.get("HALATION_SHOTS")

@@ -8,18 +8,18 @@ from pathlib import Path
 
 from gui_driver import Ui
 from gui_keys import animation
+from gui_lessons import lessons
+from gui_renders import renders
 from halation import presets
 from halation.authoring.commands import AddComment, AddFrame, ArrangeElements, Disconnect, MakeGroup, ReplaceGraph
 from halation.authoring.edits.element_id import ElementId
 from halation.authoring.recovery.recovery import RecoveryFile
-from halation.authoring.render_queue.queued_render import QueuedJob, QueuedRender, RenderState
 from halation.document import save
 from halation.editor.shared.dialogs import Browse, Purpose, Question
 from halation.editor.window.editor import Editor
 from halation.graph import Control, Graph, Input, Output, Port, Settings
 from halation.nodes import Kind, Light, LightKind, catalogue, number_lights
 from halation.nodes.input.read_image import ReadImage
-from halation.renderer.jobs.render_job import RenderJob
 from halation.resources.sandbox import UNRESTRICTED
 from toy_nodes import Lamps, Tint
 
@@ -193,13 +193,19 @@ def viewer(ui: Ui) -> Screens:
     ui.wait(2)
     yield "viewer_paused"
     seen.paused = False
+    ui.session.apply(ReplaceGraph("Add", ui.session.graph.add("retouch", catalogue()["paint"]())))
+    ui.session.select(ElementId("retouch"))
+    ui.session.views.show(Port("retouch", "out"))
+    ui.wait(6)
+    yield "viewer_brush"
+    ui.session.undo()
     ui.session.views.show(Port("outputs", "image"))
 
 
 def scopes(ui: Ui) -> Screens:
     """All four, and one."""
     ui.editor.viewer.scopes = {"histogram", "waveform", "parade", "vectorscope"}
-    show(ui, "Scopes")
+    ui.show_panel("Scopes")
     ui.settled()
     ui.wait(8)
     yield "scopes_all"
@@ -215,64 +221,27 @@ def scopes(ui: Ui) -> Screens:
 # --- panels ----------------------------------------------------------------------------------------------------------
 
 
-def show(ui: Ui, title: str) -> None:
-    """Bring a docked panel to the front."""
-    ui.ctx.window_focus(f"//{title}")
-    ui.wait(4)
-
-
 def panels(ui: Ui) -> Screens:
     """Problems, log, history."""
-    show(ui, "Problems")
+    ui.show_panel("Problems")
     yield "problems_none"
     ui.session.apply(Disconnect(Port("bloom", "image")))
     ui.editor.faults["Nowhere"] = "Traceback (most recent call last):\n  the details"
     ui.wait(4)
     yield "problems"
     ui.editor.faults.clear()
-    show(ui, "Graph")
+    ui.show_panel("Graph")
     yield "problems_on_the_canvas"
     ui.session.undo()
-    show(ui, "History")
+    ui.show_panel("History")
     yield "history"
     ui.editor.log.add("opened many_things.json")
     ui.editor.log.add("the picture beauty.exr has changed on disk and was read again", "warning")
     ui.editor.log.add("'grade.out' (Image) cannot go into 'vignette.amount' (Number)", "error", "the\ndetails")
-    show(ui, "Log")
+    ui.show_panel("Log")
     yield "log"
     ui.editor.log.entries.clear()
-    show(ui, "Graph")
-
-
-def make_render(place: Path, state: RenderState, done: int = 0, total: int = 24, **facts: object) -> QueuedRender:
-    """A render to files as the panel sees it, without a process."""
-    frames, files = tuple(range(1, total + 1)), (("image", str(place)),)
-    made = QueuedRender(QueuedJob(RenderJob(sandbox=UNRESTRICTED, destinations=files, frames=frames), Graph()))
-    made.state, made.done = state, done
-    made.started_at, made.ended_at = 1.0, 0.0 if state in ("running", "waiting") else 43.0
-    made.written_files = tuple(place.with_name(f"{place.stem}.{frame:04d}.exr") for frame in range(1, done + 1))
-    for name, fact in facts.items():
-        setattr(made, name, fact)
-    return made
-
-
-def renders(ui: Ui) -> Screens:
-    """The form, and renders in every state."""
-    show(ui, "Renders")
-    yield "renders_form"
-    folder = Path("/pictures/shots/0120")
-    ui.editor.exports.all = (
-        make_render(folder / "comp_v012.####.exr", "done", 24, notes=("image: clipped to 16 bit",)),
-        make_render(folder / "comp_v013.png", "failed", total=1, sentence="/pictures/shots/0120: no such folder"),
-        make_render(folder / "a_very_long_name_of_a_picture_that_does_not_end_v014.####.exr", "cancelled", 5),
-        make_render(folder / "comp_v015.####.exr", "running", 9, frame=10, node="bloom", passes=(3, 8)),
-        make_render(folder / "comp_v016.####.exr", "waiting"),
-        make_render(folder / "comp_v017.####.exr", "waiting"),
-    )
-    ui.wait(3)
-    yield "renders"
-    ui.editor.exports.all = ()
-    show(ui, "Graph")
+    ui.show_panel("Graph")
 
 
 # --- over everything -------------------------------------------------------------------------------------------------
@@ -314,6 +283,10 @@ def dialogs(ui: Ui) -> Screens:
             yield "preferences_conflict"
         ui.editor.dialogs.open.clear()
         ui.wait(2)
+    ui.editor.dialogs.matches = True
+    ui.wait(4)
+    yield "match"
+    ui.editor.dialogs.matches = False
     ui.editor.dialogs.question = Question(
         "Save the changes?",
         "'many_things' was changed since it was saved.",
@@ -355,12 +328,12 @@ def start(ui: Ui) -> Screens:
     ui.wait(3)
     yield "empty"
     for title in ("Scopes", "History", "Renders"):
-        show(ui, title)
+        ui.show_panel(title)
         yield f"empty_{title.lower()}"
     ui.editor.log.entries.clear()
-    show(ui, "Log")
+    ui.show_panel("Log")
     yield "empty_log"
-    show(ui, "Graph")
+    ui.show_panel("Graph")
     _open_start(ui.editor)
     ui.wait(6)
     yield "start_first"
@@ -393,6 +366,7 @@ SCREENS: tuple[Callable[[Ui], Screens], ...] = (
     renders,
     files,
     dialogs,
+    lessons,
     canvas,
     start,
 )

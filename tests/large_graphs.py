@@ -104,6 +104,31 @@ def looped(count: int) -> Document:
     return graph
 
 
+def paired(count: int) -> Document:
+    """Nodes that feed each other in pairs."""
+    graph = chain(count)
+    graph["links"] = {f"n{number}.image": f"n{number ^ 1}.out" for number in range(count)}
+    return graph
+
+
+def missing(count: int) -> Document:
+    """Files that are not there, each another one, beside many that are."""
+    nodes = {f"r{number}": {"type": "read_image", "values": {"path": f"r{number}.exr"}} for number in range(count)}
+    graph = document(nodes, {f"outputs.o{number}": f"r{number}.out" for number in range(count)})
+    return change(graph, outputs={f"o{number}": {"type": "Image"} for number in range(count)})
+
+
+def coded(count: int) -> Document:
+    """Nodes of code, each of another one."""
+    graph = chain(count)
+    for number in range(count):
+        graph["nodes"][f"n{number}"] = {
+            "type": "glsl",
+            "code": [f"vec4 tint(vec4 image) {{ return image * {number}.0; }}"],
+        }
+    return graph
+
+
 def distinct(count: int) -> Document:
     """Nodes in a row, each with another number."""
     graph = chain(count)
@@ -144,6 +169,9 @@ GRAPHS: Mapping[str, Callable[[int], Document]] = MappingProxyType(
         "mislinked": mislinked,
         "mistyped": mistyped,
         "looped": looped,
+        "paired": paired,
+        "missing": missing,
+        "coded": coded,
         "unused": unused,
         "read behind": read_behind,
         "unknown keys": lambda count: change(chain(2), **{f"x{number}": 1 for number in range(count)}),

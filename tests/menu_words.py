@@ -69,6 +69,7 @@ BLENDER = {
 }
 
 NUKE = {
+    "RotoPaint": "paint roto",
     "GridWarp": "grid_warp",
     "SplineWarp": "spline_warp",
     "Read": "read_image read_render",
@@ -256,6 +257,7 @@ NATRON = {
     "Ramp": "ramp",
     "Rectangle": "shape crop",
     "Roto": "roto",
+    "RotoPaint": "paint roto",
     "SeGrain": "film_grain",
     "SeNoise": "noise",
     "Text": "text",

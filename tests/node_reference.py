@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import inspect
+import json
 import re
 import textwrap
 from collections.abc import Callable, Iterable, Iterator
@@ -11,7 +12,7 @@ from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Literal, get_args
+from typing import Any, Literal, get_args, get_origin
 
 import halation.nodes as vocabulary
 from api_reference import describe, describe_callable, write_signature
@@ -114,7 +115,8 @@ Generated from the code by `./dev renew`. [CONTRIBUTING](CONTRIBUTING.md#a-node)
 write a node; [shaders.md](shaders.md) is about GLSL in a graph, which may use the same libraries.
 
 A node is a class and a GLSL file. The class body declares sockets and values; import what it uses from
-`halation.nodes`, in Halation itself from `.._declare`. Sockets and values reach GLSL in declared order.
+`halation.nodes`, in Halation itself from `.._declare`. Sockets and values reach GLSL in declared order. A class that
+declares no output has one Image, `out`.
 
 A node whose first output is its input `image`, changed, at the same size, gets an input `mask` and the values `mix` and
 `invert_mask` by itself. They are no parameters of its GLSL: Halation applies them after the node. The three belong
@@ -128,10 +130,24 @@ DRAWS = """\
 name. Nothing runs yet. Functions are those of the node's own GLSL file and of
 the libraries that it includes.
 
+`draw(...)` calls a function that reads pictures by name, at any place; `draw.point` one that gets pixels as parameters:
+
+```python
+def passes(self, draw: Draw) -> Drawn:
+    reach = math.ceil(self.distance) + 1  # `near` reads one pixel more
+    return draw("smear", self.image, overlap=reach, away=(self.distance, 0.0))
+```
+
+```glsl
+vec4 smear(vec2 away) { return 0.5 * (image_at(pixel) + image_near(vec2(pixel) + 0.5 - away)); }
+```
+
 `self` has the values in working units: lengths (`px` and `height`) in pixels of the picture that is rendered, also in a
 proxy, and angles in radians. They are plain numbers, so `passes` may calculate with them, and choose how many draws it
 takes. Sockets such as `self.image` stand for pictures: pass them on. No value of a filter can be linked; what is linked
 comes through a socket, such as a `Number`.
+
+An `overlap` that is too small shows as seams in large pictures; `halation nodes --check` finds it.
 
 The arguments of `draw.point` are the parameters of the GLSL function, in its order and by its names: first the inputs,
 then the keywords. A keyword is a picture that was drawn before, a value or a number:
@@ -318,8 +334,10 @@ def _describe_reaches() -> Iterator[tuple[str, str]]:
 
 def _describe_type_names() -> Iterator[tuple[str, str]]:
     docs = {name: doc for module in (draw_module, sockets, values) for name, doc in _constant_docs(module).items()}
+    aliases = {name: item for module in (draw_module, sockets, values) for name, item in vars(module).items()}
     for name in TYPE_NAMES:
-        yield f"`{name}`", _join_lines(docs[name])
+        choices = get_args(aliases[name]) if get_origin(aliases[name]) is Literal else ()
+        yield f"`{name}`", f"{_join_lines(docs[name])} {' '.join(f'`{json.dumps(choice)}`' for choice in choices)}"
 
 
 def _write_line(name: str, helper: Callable[..., Any]) -> str:

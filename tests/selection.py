@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 from _pytest.mark import ParameterSet
-from changes import covers, list_changes
+from changes import covers, is_case_of, list_changes, name_changed_nodes, tries_all_nodes
 
 TESTS = Path(__file__).parent
 LIST = TESTS / "slow_tests.txt"
@@ -51,7 +51,8 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
     """Do not even import the rooms that `--fast` leaves out."""
     is_slow = collection_path.is_relative_to(TESTS) and collection_path.relative_to(TESTS).parts[:1] in _FIRST_PARTS
     if config.getoption("--changed") and collection_path.name.startswith("test_"):
-        return None if covers(collection_path, list_changes()) else True
+        is_tried = name_changed_nodes(list_changes()) and tries_all_nodes(collection_path)
+        return None if is_tried or covers(collection_path, list_changes()) else True
     return True if config.getoption("--fast") and is_slow else None
 
 
@@ -59,6 +60,10 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     """Leave out what is slow, and what is for the night."""
     if not config.getoption("--nightly"):
         _leave_out(config, items, lambda item: item.get_closest_marker("nightly") is not None)
+    if config.getoption("--changed"):
+        changes = list_changes()
+        ids = name_changed_nodes(changes)
+        _leave_out(config, items, lambda item: not (covers(item.path, changes) or is_case_of(item.name, ids)))
     if config.getoption("--fast"):
         slow = set(LIST.read_text("utf-8").split("\n"))
         _leave_out(config, items, lambda item: name_function(item.nodeid) in slow)

@@ -54,6 +54,9 @@ REASONS: dict[str, Cause] = {
     "git is not installed": "tool",
     "not installed as a command": "tool",
     "glslangValidator is not installed": "tool",
+    "slangpy is not installed": "tool",
+    "there is no driver of Vulkan": "tool",
+    "vkBasalt or Xvfb is not installed": "tool",
     "uv is not installed": "tool",
 }
 """How a reason begins, and what it is due to: the system, a case without anything to test, or a missing tool."""

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from changes import covers, list_changes
+from changes import covers, is_case_of, list_changes, name_changed_nodes, tries_all_nodes
 from selection import LIST, name_function
 
 ROOT = Path(__file__).parents[1]
@@ -212,6 +212,18 @@ def test_fast_tests_are_those_of_other_rooms_that_are_not_listed(tmp_path: Path)
 )
 def test_changed_files_are_covered_by_what_imports_them(changed: str, test: str, covered: bool) -> None:
     assert covers(ROOT / test, {ROOT / changed}) is covered
+
+
+def test_a_changed_node_is_tried_by_the_tests_of_all_nodes(tmp_path: Path) -> None:
+    (tmp_path / "nodes" / "color").mkdir(parents=True)
+    (tmp_path / "nodes" / "color" / "fade.py").write_text("")
+    changes = {tmp_path / name for name in ("nodes/color/fade.py", "shaders/lib/alpha.glsl", "app/fade.py")}
+    assert name_changed_nodes(changes, tmp_path) == {"fade"}
+    assert name_changed_nodes({tmp_path / "shaders/color/fade.glsl"}, tmp_path) == {"fade"}
+    assert is_case_of("test_its_pixels_are_sound[bad pixels-fade]", {"fade"})
+    assert not is_case_of("test_its_pixels_are_sound[bad pixels-fader]", {"fade"})
+    assert tries_all_nodes(ROOT / "tests/renderer/test_regions.py")
+    assert not tries_all_nodes(ROOT / "tests/nodes/test_curvature.py")
 
 
 def test_every_module_of_the_lower_floors_is_covered() -> None:

@@ -199,7 +199,10 @@ def random_edit(rng: Random, graph: Graph, depth: int = 0) -> Graph:
         (1, lambda: graph.mute(id, rng.random() < 0.7)),
         (2, lambda: _random_set(rng, graph, id)),
         (2, lambda: graph.add_input(name, Input(rng.choice([*Kind]), rng.randint(2, 4), rng.choice(["", "a.exr"])))),
-        (2, lambda: graph.add_output(name, Output(rng.choice([*Kind]), rng.randint(2, 4)))),
+        (
+            2,
+            lambda: graph.add_output(name, Output(rng.choice([*Kind]), rng.randint(2, 4), overscan=rng.random() < 0.3)),
+        ),
         (2, lambda: graph.add_control(name, Control(Port(id, rng.choice(["gain", "sigma", "a", "b", "tint"]))))),
         (1, lambda: rng.choice([graph.remove_input, graph.remove_output, graph.remove_control])(name)),
         (1, lambda: rng.choice([graph.rename_input, graph.rename_output, graph.rename_control])(name, name + "2")),

@@ -15,6 +15,7 @@ from halation.authoring.edits.element_id import ElementId
 from halation.authoring.session import Session
 from halation.errors import GraphError
 from halation.graph import Graph, Keys, Port
+from halation.nodes import Light, number_lights
 from halation.resources.sandbox import UNRESTRICTED
 from toy_nodes import TOYS, chain
 
@@ -53,6 +54,7 @@ EXAMPLES: dict[type[EditCommand], Callable[[Session, Path], EditCommand]] = {
     c.AddItem: lambda s, p: c.AddItem(LIGHTS, "spot", {"intensity": 2.0}),
     c.DuplicateItem: lambda s, p: c.DuplicateItem(LIGHTS, "lamp_1"),
     c.RemoveItem: lambda s, p: c.RemoveItem(LIGHTS, "lamp_1"),
+    c.ExchangeItems: lambda s, p: c.ExchangeItems(LIGHTS, "lamp_1", "lamp_2"),
     c.RenameItem: lambda s, p: c.RenameItem(LIGHTS, "lamp_1", "rim"),
     c.ResetValue: lambda s, p: c.ResetValue(GAIN),
     c.ResetNode: lambda s, p: c.ResetNode("gain"),
@@ -123,7 +125,9 @@ def session(tmp_path: Path) -> Session:
     session = Session(types, sandbox=UNRESTRICTED)
     graph = chain(3).add("gain", TOYS["gain"]()).add("blend", TOYS["blend"]()).add("render", types["read_render"]())
     graph = graph.connect(port("n0.out"), port("blend.first")).connect(port("n0.out"), port("blend.second"))
-    graph = graph.add("soften", TOYS["soften"]()).add("lamps", TOYS["lamps"]())
+    graph = graph.add("soften", TOYS["soften"]()).add(
+        "lamps", TOYS["lamps"](lights=number_lights([Light(), Light(intensity=2.0)]))
+    )
     session.apply(c.ReplaceGraph("Start", dataclasses.replace(graph, folder=str(tmp_path))))
     session.apply(c.SetValue(GAIN, 0.75))
     for name, command in {

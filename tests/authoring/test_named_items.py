@@ -6,6 +6,7 @@ import pytest
 from halation.authoring.commands import (
     AddItem,
     DuplicateItem,
+    ExchangeItems,
     RemoveItem,
     RenameItem,
     ReplaceGraph,
@@ -73,6 +74,18 @@ def test_keys_expressions_and_controls_follow_a_name(session):
     assert loads(text, catalogue=TOYS, sandbox=UNRESTRICTED) == session.graph
 
 
+def test_exchanged_lights_have_each_others_place_with_their_keys_and_controls(session):
+    session.apply(SetKey(INTENSITY))
+    session.apply(ExchangeItems(LIGHTS, "lamp_1", "lamp_2"))
+    assert [*of(session).values()] == [LAMPS[1], LAMPS[0]]
+    other = Port("lamps", "lights.lamp_2.intensity")
+    assert [*session.graph.animation] == [other] and session.graph.controls["key"].target == other
+    session.undo()
+    assert [*of(session).values()] == [*LAMPS]
+    session.apply(ExchangeItems(LIGHTS, "lamp_1", "lamp_1"))
+    assert [*of(session).values()] == [*LAMPS]
+
+
 def test_a_removed_light_takes_its_keys_and_a_copy_has_them_too(session):
     session.apply(SetKey(INTENSITY))
     session.apply(DuplicateItem(LIGHTS, "lamp_1"))
@@ -101,6 +114,7 @@ def test_fields_are_set_keyed_and_reset_like_values(session):
         (AddItem(LIGHTS, "spot", name="a.b"), "a light cannot be called 'a.b'"),
         (RemoveItem(LIGHTS, "lamp_9"), "'lamps.lights' has no light 'lamp_9'"),
         (RenameItem(LIGHTS, "lamp_1", "lamp_2"), "a light called 'lamp_2' already exists"),
+        (ExchangeItems(LIGHTS, "lamp_1", "lamp_7"), "'lamps.lights' has no light 'lamp_7'"),
         (RenameItem(LIGHTS, "lamp_1", ""), "the name of a light cannot be empty"),
     ],
 )

@@ -16,9 +16,13 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from bench.programs import halation_command
 from bench.started import run_process
+from large_graphs import GRAPHS
 
 CHAINS = (20_000, 99_000)
 """Nodes; a file may hold 100,000."""
+
+SHAPES = {"mislinked": 99_000, "paired": 99_000, "coded": 99_000, "animated": 99_000, "missing": 40_000}
+"""Graphs of `large_graphs`, and how many nodes of each: links to nothing, loops, code, expressions, missing files."""
 
 
 def write_chain(count: int) -> str:
@@ -47,6 +51,8 @@ def write_files() -> Iterator[tuple[str, str]]:
     yield "a string of 20 MB", write_graph(ui={"note": "x" * (20 << 20)})
     yield "40,000 brackets", write_graph(ui=[]).replace("[]", "[" * 40_000 + "]" * 40_000)
     yield "100,000 faults", write_graph(nodes={f"n{number}": {"type": f"t{number}"} for number in range(99_000)})
+    for name, count in SHAPES.items():
+        yield f"{count:,} {name}", json.dumps(GRAPHS[name](count), indent=1)
     for count in CHAINS:
         yield f"{count:,} nodes", write_chain(count)
 

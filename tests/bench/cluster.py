@@ -1,6 +1,7 @@
 """Measures `render --cluster`, and computes what a large cluster would reach: the figures of docs/cluster.md.
 
 .venv/bin/python tests/bench/cluster.py measure     # minutes, on an idle machine
+.venv/bin/python tests/bench/cluster.py interrupt
 .venv/bin/python tests/bench/cluster.py simulate
 """
 
@@ -9,11 +10,14 @@ from __future__ import annotations
 import heapq
 import json
 import os
+import signal
 import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
+
+WORKERS = os.cpu_count() or 1
 
 HALATION = (sys.executable, "-m", "halation.cli")
 TRIVIAL = {
@@ -23,6 +27,19 @@ TRIVIAL = {
     "links": {"outputs.image": "c.out"},
     "settings": {"size": [16, 9]},
 }
+SHOT = {
+    "halation": 1,
+    "nodes": {
+        "ramp": {"type": "ramp"},
+        "noise": {"type": "noise"},
+        "mix": {"type": "merge"},
+        "blur": {"type": "gaussian_blur"},
+    },
+    "outputs": {"image": {"type": "Image"}},
+    "links": {"mix.a": "noise.out", "mix.b": "ramp.out", "blur.image": "mix.out", "outputs.image": "blur.out"},
+    "animation": {"blur.sigma": {"keys": [{"frame": 1, "value": 20}, {"frame": 400, "value": 40}]}},
+}
+"""A value changes with each frame: of a graph that stands still, only the first frame would be rendered."""
 
 
 def run(folder: Path, *words: object) -> tuple[float, float, dict[str, object]]:
@@ -37,13 +54,15 @@ def run(folder: Path, *words: object) -> tuple[float, float, dict[str, object]]:
 
 
 def measure_overhead(folder: Path, size: str, counts: tuple[int, int], rounds: int) -> None:
-    """Seconds that a frame adds by -j 4 and by four workers, in turn: any number of frames has the same start."""
-    shares = {"-j 4": ("-j", 4), "--cluster local:4": ("--cluster", "local:4")}
+    """Seconds that a frame adds by -j and by as many workers, in turn: any number of frames has the same start."""
+    (folder / "shot.json").write_text(json.dumps(SHOT))
+    local = f"local:{WORKERS}"
+    shares = {f"-j {WORKERS}": ("-j", WORKERS), f"--cluster {local}": ("--cluster", local)}
     measured: dict[tuple[str, int], list[tuple[float, float]]] = {}
     for _ in range(rounds):
         for count in counts:
             for name, share in shares.items():
-                words = ("cinematic_grade", "--size", size, "--frames", f"1-{count}", "-o", "f.####.exr")
+                words = ("shot.json", "--size", size, "--frames", f"1-{count}", "-o", "f.####.exr")
                 measured.setdefault((name, count), []).append(run(folder, *words, *share)[:2])
     for name in shares:
         few, many = (measured[name, count] for count in counts)
@@ -56,8 +75,8 @@ def measure_overhead(folder: Path, size: str, counts: tuple[int, int], rounds: i
 
 def measure_scaling(folder: Path, frames: int, size: str) -> None:
     """The same frames by one, two and four workers with a thread each."""
-    words = ("cinematic_grade", "--size", size, "--frames", f"1-{frames}", "-o", "f.####.exr")
-    for count in (1, 2, 4):
+    words = ("shot.json", "--size", size, "--frames", f"1-{frames}", "-o", "f.####.exr")
+    for count in (1, 2, 4)[: WORKERS.bit_length()]:
         print(f"local:{count}: {run(folder, *words, '--cluster', f'local:{count}')[0]:.2f} s for {frames} frames")
 
 
@@ -66,17 +85,52 @@ def measure_rate(folder: Path, frames: int) -> None:
     from distributed import Client, LocalCluster
 
     (folder / "trivial.json").write_text(json.dumps(TRIVIAL))
-    words = ("trivial.json", "-o", "t.####.exr", "--cluster", "local:4")
+    words = ("trivial.json", "-o", "t.####.exr", "--cluster", f"local:{WORKERS}")
     start = run(folder, *words, "--frames", "1-1")[0]
     print(f"start: {start:.2f} s for one frame that costs nothing")
     seconds, _, report = run(folder, *words, "--frames", f"1-{frames}")
     rates = f"{frames / seconds:.0f} frames a second, {frames / (seconds - start):.0f} after the start"
-    print(f"--cluster local:4: {rates}, {report['chunks']} chunks")
-    cluster = LocalCluster(4, threads_per_worker=1, processes=False, dashboard_address=":0")
+    print(f"--cluster local:{WORKERS}: {rates}, {report['chunks']} chunks")
+    cluster = LocalCluster(WORKERS, threads_per_worker=1, processes=False, dashboard_address=":0")
     with cluster, Client(cluster) as dask:
         started = time.perf_counter()
         dask.gather(dask.map(abs, range(frames), pure=False))
         print(f"plain Dask: {frames / (time.perf_counter() - started):.0f} empty tasks a second")
+
+
+def measure_interrupt(folder: Path, rounds: int) -> None:
+    """Seconds from Ctrl-C to the end of the command, with a scheduler and a worker that are processes of their own."""
+    sys.path.insert(0, str(Path(__file__).parents[1]))
+    from farms import Farm, find_port, start_scheduler
+
+    (folder / "shot.json").write_text(json.dumps(SHOT))
+    # A shell that starts this in the background has it ignore Ctrl-C, which commands would inherit.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    port = find_port()
+    farm = Farm(folder, f"tcp://127.0.0.1:{port}", start_scheduler(folder, port))
+    farm.start_worker()
+    try:
+        for share in (("-j", "2"), ("--cluster", "local:2"), ("--cluster", farm.address)):
+            measured = [interrupt_render(folder, share) for _ in range(rounds)]
+            left = len(list(folder.glob(".halation-*")))
+            seconds = ", ".join(f"{one:.2f}" for one in measured)
+            print(f"{' '.join(share)}: {seconds} s until the command has ended, {left} unfinished files")
+    finally:
+        farm.stop()
+
+
+def interrupt_render(folder: Path, share: tuple[str, ...]) -> float:
+    """Send SIGINT to a render when two frames are written; the seconds until it has ended."""
+    for path in folder.glob("i.*.exr"):
+        path.unlink()
+    words = ("render", "shot.json", "--size", "1280x720", "--frames", "1-999", "-o", "i.####.exr", *share)
+    with subprocess.Popen([*HALATION, *words], cwd=folder, stderr=subprocess.DEVNULL) as process:
+        while len(list(folder.glob("i.*.exr"))) < 2:
+            time.sleep(0.02)
+        began = time.perf_counter()
+        process.send_signal(signal.SIGINT)
+        process.wait()
+        return time.perf_counter() - began
 
 
 def simulate(
@@ -115,10 +169,14 @@ def main() -> None:
     if sys.argv[1:2] == ["simulate"]:
         print_simulation()
         return
+    print(f"{WORKERS} cores, load {os.getloadavg()[0]:.1f}")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
+        if sys.argv[1:2] == ["interrupt"]:
+            measure_interrupt(folder, 5)
+            return
         measure_rate(folder, 10_000)
-        measure_overhead(folder, "1280x720", (8, 72), 2)
+        measure_overhead(folder, "1280x720", (4, 44), 3)
         measure_scaling(folder, 24, "1280x720")
 
 

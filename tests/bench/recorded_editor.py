@@ -34,8 +34,9 @@ class Recorder:
 
     window: Window
     lines: deque[str] = field(default_factory=deque[str])
-    frames: list[tuple[float, float, float, int, int]] = field(default_factory=list)
-    """When each frame was shown, where it found the mouse, the frame of the timeline, the picture of the viewer."""
+    frames: list[tuple[float, float, float, int, int, float]] = field(default_factory=list)
+    """When each frame was shown, where it found the mouse, the frame of the timeline, the picture of the viewer, and
+    the processor time of the thread that draws until then."""
     first_picture: float = 0.0
 
     def note(self) -> None:
@@ -43,7 +44,8 @@ class Recorder:
         editor, mouse = self.window.editor, imgui.get_io().mouse_pos
         image = editor.preview.find_whole_image("A")
         now = time.monotonic()
-        self.frames.append((now, mouse.x, mouse.y, editor.session.time.frame, image.revision if image else 0))
+        revision, used = image.revision if image else 0, time.thread_time()
+        self.frames.append((now, mouse.x, mouse.y, editor.session.time.frame, revision, used))
         if image and not self.first_picture:
             self.first_picture = now
         while self.lines:
@@ -90,7 +92,7 @@ class Recorder:
             "frames": len(self.frames),
         }
 
-    def take_frames(self, _: str) -> list[tuple[float, float, float, int, int]]:
+    def take_frames(self, _: str) -> list[tuple[float, float, float, int, int, float]]:
         """The frames since this was asked last."""
         frames, self.frames = self.frames, []
         return frames

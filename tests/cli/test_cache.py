@@ -6,6 +6,7 @@ import json
 import stat
 import zipfile
 from pathlib import Path
+from random import Random
 
 import pytest
 from halation.renderer.opengl.shader_cache import DISABLING
@@ -134,6 +135,26 @@ def test_what_is_no_archive(cli, base: Path, tmp_path: Path) -> None:
     for name, words in (("text.zip", "is damaged"), ("empty.zip", "is no archive that"), ("none.zip", "none.zip")):
         result = cli("cache", "--import", tmp_path / name)
         assert result.code != 0 and words in result.err and "Traceback" not in result.err
+
+
+@pytest.mark.parametrize("method", [zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
+def test_damaged_archives(cli, base: Path, tmp_path: Path, monkeypatch, method: int) -> None:
+    """Each kind of compression has exceptions of its own. Nothing that is not whole is imported."""
+    assert cli("cache", "--export", tmp_path / "whole.zip").code == 0
+    with zipfile.ZipFile(tmp_path / "whole.zip") as archive:
+        header = archive.read("halation-cache.json")
+    with zipfile.ZipFile(tmp_path / "other.zip", "w", method) as archive:
+        archive.writestr("halation-cache.json", header)
+        archive.writestr(OTHER, b"code of another program" * 20)
+    whole, rng = (tmp_path / "other.zip").read_bytes(), Random(method)
+    for number in range(60):
+        damaged = bytearray(whole)
+        damaged[rng.randrange(len(damaged))] ^= rng.randrange(1, 256)
+        (tmp_path / "damaged.zip").write_bytes(damaged)
+        base = use_cache(tmp_path / f"base{number}", monkeypatch, {PROGRAM: b"code"})
+        result = cli("cache", "--import", tmp_path / "damaged.zip")
+        assert result.code in (0, 4), result
+        assert read_files(base).get(OTHER, b"code of another program" * 20) == b"code of another program" * 20
 
 
 def test_nothing_to_export(cli, base: Path, tmp_path: Path, monkeypatch) -> None:

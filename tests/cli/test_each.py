@@ -197,6 +197,8 @@ def test_nothing_outside_of_the_root_is_read_or_written(cli, graphs, photos):
     result = each(cli, graph, *words, "-o", photos / "fence" / "new" / "{stem}.exr")
     assert result.code == 1 and "lies outside of" in lines(result)[0]["error"]["message"]
     assert [path.name for path in (photos / "fence" / "new").iterdir()] == ["d.exr"]
+    result = cli("render", graph, "--each", "in/*.exr", *words[4:], "-o", photos / "fence" / "{stem}.exr")
+    assert result.code == 2 and "--each in/*.exr: in: lies outside of" in result.err
     result = each(cli, graph, *words, "-o", photos / "elsewhere" / "{stem}.exr")
     assert result.code == 1 and not (photos / "elsewhere").exists()
 
@@ -240,7 +242,7 @@ def test_an_interrupt_leaves_finished_files_whole(graphs, photos):
 
 
 def test_places_are_refused_where_a_line_has_no_file():
-    from halation.cli.each import expand_entries
+    from halation.renderer.jobs.entry_list import expand_entries
     from halation.resources.sandbox import UNRESTRICTED
 
     with pytest.raises(UsageError, match="line 1 of --each names no file"):

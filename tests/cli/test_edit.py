@@ -29,12 +29,12 @@ def broken(*_, **__):
 
 count = [0]
 
-def broken_later(self, *_):
+def broken_later(self, editor):
     count[0] += 1
     if count[0] == 5:
         from halation.authoring.commands import SetValue
         from halation.graph import Port
-        self.editor.session.apply(SetValue(Port("tone", "exposure"), 2.5))
+        editor.session.apply(SetValue(Port("tone", "exposure"), 2.5))
     if count[0] > 8:
         broken()
 
@@ -153,7 +153,7 @@ def test_a_fault_at_the_start_is_a_sentence_and_no_crash(place, what: str, fault
 
 
 def test_a_fault_of_the_window_keeps_unsaved_work(place: dict[str, str]) -> None:
-    script = BROKEN_PARTS.format(fault="ValueError('oh')", what="window.Window._restyle", how="broken_later")
+    script = BROKEN_PARTS.format(fault="ValueError('oh')", what="window.Appearance.follow", how="broken_later")
     code, said = ended(place, LOOK, program=[sys.executable, "-c", script])
     assert code == 70 and "bug in Halation (ValueError: oh)" in said
     (kept,) = Path(place["HALATION_STATE"], "recovery").glob("*.json")

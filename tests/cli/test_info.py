@@ -68,6 +68,7 @@ def test_a_render_for_machines(cli, path):
         "file",
         "format",
         "size",
+        "pixel_aspect",
         "renderer",
         "renderer_reason",
         "parts",

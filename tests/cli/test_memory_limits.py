@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from halation.cli.outcome import describe_fault
 from oiio_pictures import write_picture
 from selection import list_cases
 
@@ -102,3 +103,21 @@ def test_a_limited_command_can_be_interrupted(tmp_path: Path):
         process.send_signal(signal.SIGTERM)
         assert "interrupted" in process.stdout.read()
     assert process.returncode == 130
+
+
+@pytest.mark.parametrize(
+    "fault",
+    [
+        RuntimeError("can't start new thread"),
+        ImportError("liba.so: failed to map segment from shared object"),
+        RuntimeError("std::bad_alloc"),
+        OSError("Cannot allocate memory"),
+        RuntimeError("exr_start_read (EXR_ERR_OUT_OF_MEMORY) Unable to allocate memory"),
+        MemoryError(),
+    ],
+    ids=str,
+)
+def test_what_libraries_say_without_memory(fault: BaseException):
+    """Each says it in its own words, which is no bug of ours."""
+    facts = describe_fault(fault)
+    assert (facts["kind"], facts["exit_code"]) == ("MemoryError", 1) and "memory" in facts["message"]

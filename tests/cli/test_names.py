@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import subprocess
 import sys
 from pathlib import Path
 
@@ -70,6 +71,19 @@ def test_every_command(cli, folder):
     ):
         ended = cli(*words)
         assert ended.code == 0, (words, ended.err)
+
+
+def test_a_process_prints_them(folder):
+    """The streams of a process take UTF-8 only, unless they are told otherwise."""
+    for words, code in (
+        (("info", folder / f"in{ODD}.exr"), 0),
+        (("check", folder), 0),
+        (("info", folder / f"missing{ODD}.exr"), 4),
+    ):
+        command = [sys.executable, "-P", "-m", "halation.cli", *map(str, words)]
+        ended = subprocess.run(command, capture_output=True, timeout=60, check=False)
+        assert ended.returncode == code, ended.stderr
+        assert b"\\udcff" in ended.stdout + ended.stderr and b"bug in Halation" not in ended.stderr
 
 
 @pytest.mark.parametrize("words", [("info",), ("check",), ("render", "-o", "x.exr"), ("fmt",), ("explain",)])

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import io
 import json
+import os
 import socket
 import stat
 import subprocess
@@ -20,7 +20,7 @@ from exr_files import write_exr
 from halation import document
 from halation.errors import RenderError
 from halation.resources.sandbox import UNRESTRICTED
-from halation.scripting.packed_arrays import pack_array, unpack_array
+from halation.scripting.packed_arrays import pack_array, read_pictures, unpack_array, write_message
 
 POSIX = pytest.mark.skipif(not hasattr(socket, "AF_UNIX"), reason="this system has no local sockets")
 BLUR = {
@@ -180,14 +180,19 @@ def test_a_request_that_takes_too_long_is_ended(tmp_path, graphs):
         assert connection.render(graphs(**ENDLESS), frame=1)["image"].shape == (32, 48, 4)
 
 
+def slow_graph() -> dict:
+    """A graph whose code does not end in time."""
+    loops = "for (int i = 0; i < 100000; i++) for (int j = 0; j < 100000; j++)"
+    code = ["vec4 f(vec4 image) {", f"float x = image.r; {loops} x = fract(sin(x + i) * j);", "return image * x;", "}"]
+    nodes = {"light": {"type": "exposure"}, "slow": {"type": "glsl", "code": code}}
+    return {"nodes": nodes, "links": {"slow.image": "light.out", "outputs.image": "slow.out"}}
+
+
 @POSIX
 @pytest.mark.skipif(sys.platform != "linux", reason="fork and SIGKILL")
 def test_a_server_begins_again_after_code_that_does_not_end(tmp_path, graphs):
     """It is the code of one client; others connect again and go on."""
-    loops = "for (int i = 0; i < 100000; i++) for (int j = 0; j < 100000; j++)"
-    code = ["vec4 f(vec4 image) {", f"float x = image.r; {loops} x = fract(sin(x + i) * j);", "return image * x;", "}"]
-    nodes = {"light": {"type": "exposure"}, "slow": {"type": "glsl", "code": code}}
-    slow = {"nodes": nodes, "links": {"slow.image": "light.out", "outputs.image": "slow.out"}}
+    slow = slow_graph()
     with started(tmp_path, "--timeout", "1") as (path, process):
         assert process.stderr is not None
         for _ in range(2):
@@ -268,6 +273,8 @@ def test_only_the_user_connects_and_one_server_listens(tmp_path):
         command = [sys.executable, "-m", "halation.cli", "serve", "--socket", str(path)]
         refused = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
         assert refused.returncode == 1 and "another process listens here" in refused.stderr
+        with hal.connect(path) as connection:  # the refused one leaves the socket where it is
+            assert connection.ask("check", "soft_bloom")["exit_code"] == 0
     with started(tmp_path) as (path, process):
         process.kill()
         process.wait(30)
@@ -278,6 +285,24 @@ def test_only_the_user_connects_and_one_server_listens(tmp_path):
     with started(tmp_path) as (path, process):  # what a killed server has left is replaced
         process.terminate()
         assert process.wait(30) == 0 and not path.exists()
+
+
+@POSIX
+@pytest.mark.parametrize("kind", ["file", "FIFO", "folder", "link"])
+def test_what_is_there_is_not_lost_for_a_socket(tmp_path, kind):
+    path, other = tmp_path / "server", tmp_path / "other"
+    other.write_text("precious")
+    {
+        "file": lambda: path.write_text("precious"),
+        "FIFO": lambda: os.mkfifo(path),
+        "folder": path.mkdir,
+        "link": lambda: path.symlink_to(other),
+    }[kind]()
+    before = path.lstat()
+    command = [sys.executable, "-m", "halation.cli", "serve", "--socket", str(path)]
+    refused = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert refused.returncode == 1 and "the socket cannot be created" in refused.stderr
+    assert path.lstat() == before and other.read_text() == "precious"
 
 
 def test_lines_on_standard_input_are_answered_on_standard_output(graphs):
@@ -295,6 +320,48 @@ def test_lines_on_standard_input_are_answered_on_standard_output(graphs):
     assert unpack_array("image", second["pictures"]["image"]).shape == (32, 48, 4)
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="fork and SIGKILL")
+def test_code_that_does_not_end_costs_one_request_of_a_stream(graphs):
+    """The process that answers is replaced, and what waits is answered by the next."""
+    fast, slow = str(graphs()), str(graphs("slow.json", **slow_graph()))
+    requests = [
+        {"do": "render", "id": "a", "graph": slow, "size": [512, 512]},
+        {"do": "render", "id": "b", "graph": fast},
+        {"do": "render", "id": "c", "graph": slow, "size": [512, 512]},
+        {"do": "check", "id": "d", "graph": slow},
+        {"do": "render", "id": "e", "graph": fast},
+        {"do": "cancel", "request": "e"},
+        {"do": "dance", "id": "f"},
+    ]
+    result = subprocess.run(
+        [sys.executable, "-m", "halation.cli", "serve", "--timeout", "1"],
+        input="\n".join(map(json.dumps, requests)).encode(),
+        capture_output=True,
+        check=True,
+        timeout=200,
+    )
+    replies = {reply["id"]: reply for reply in map(json.loads, result.stdout.splitlines())}
+    assert sorted(replies) == ["a", "b", "c", "d", "e", "f"]
+    for name in "ac":
+        error = replies[name]["error"]
+        assert (error["kind"], error["exit_code"]) == ("DeviceError", 5)
+        assert "node 'slow'" in error["message"] and "has not ended after 1 seconds" in error["message"]
+    assert unpack_array("image", replies["b"]["pictures"]["image"]).shape == (32, 48, 4)
+    assert "problems" in replies["d"] and replies["e"]["cancelled"] is True
+    assert "not a request" in replies["f"]["error"]["message"]
+    assert result.stderr.decode().count("the server begins again") == 2
+
+
+def test_a_request_of_many_megabytes_arrives_whole(graphs):
+    """It is more than a pipe holds, so it is passed on in parts, as its reply is."""
+    picture = np.random.default_rng(1).random((512, 1024, 4), np.float32)
+    with hal.connect() as connection:
+        graph = hal.load(graphs())
+        for _ in range(2):
+            received = connection.render(graph, {"beauty": picture}, values={"light.stops": 1.0}, precision="float")
+            np.testing.assert_allclose(received["image"][..., :3], 2.0 * picture[..., :3], rtol=1e-5)
+
+
 def test_a_process_of_its_own_ends_with_the_connection(graphs):
     with hal.connect() as connection:
         assert connection.render(graphs())["image"].shape == (32, 48, 4)
@@ -305,6 +372,14 @@ def test_a_process_of_its_own_ends_with_the_connection(graphs):
 def test_an_array_comes_back_as_it_was_sent():
     for dtype in (np.float16, np.float32):
         array = np.random.default_rng(2).normal(size=(3, 5, 4)).astype(dtype)
-        packed = json.load(io.StringIO(json.dumps(pack_array(array[:, ::-1]))))
+        line = write_message({"pictures": {"a": pack_array(array[:, ::-1])}})
+        packed = json.loads(line)["pictures"]["a"]
         received = unpack_array("a", packed)
         assert received.dtype == dtype and (received == array[:, ::-1]).all()
+        pictures = read_pictures(line)
+        assert pictures is not None and pictures["a"].dtype == dtype and (pictures["a"] == received).all()
+    # A name that is not UTF-8 is written by the other way, to the same text.
+    assert json.loads(
+        write_message({"id": "\udcff", "pictures": {"a": pack_array(array)}}).decode("utf-8", "surrogateescape")
+    )["pictures"] == {"a": json.loads(write_message({"pictures": {"a": pack_array(array)}}))["pictures"]["a"]}
+    assert read_pictures(b'{"id": 1, "error": {}}') is None

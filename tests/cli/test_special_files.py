@@ -141,14 +141,15 @@ def test_a_mesh_waits_for_no_material(tmp_path):
     assert len(load_mesh(SceneFile(str(tmp_path / "a.obj"), "z"), UNRESTRICTED).indices) == 3
 
 
-def test_a_mesh_follows_no_link_out(tmp_path):
+@pytest.mark.parametrize("has_root", [True, False])
+def test_a_mesh_follows_no_link_out(tmp_path, has_root):
     """A material that is not where its name says is looked up beside the mesh, where a link may lead out."""
     (tmp_path / "secret.mtl").write_text("newmtl m\nKd 1 0 0\n")
     jail = tmp_path / "jail"
     jail.mkdir()
     (jail / "m.mtl").symlink_to("../secret.mtl")
     (jail / "a.obj").write_text("mtllib gone/m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n")
-    mesh = load_mesh(SceneFile(str(jail / "a.obj"), "z"), UNRESTRICTED.narrow(jail))
+    mesh = load_mesh(SceneFile(str(jail / "a.obj"), "z"), UNRESTRICTED.narrow(jail) if has_root else UNRESTRICTED)
     assert mesh.vertices[0, 8:11].tolist() != [1.0, 0.0, 0.0]
 
 
@@ -275,13 +276,26 @@ def write_graphs(folder: Path) -> None:
         ("test", "cases.suite.toml", "--update"),
         ("test", "cases.suite.toml", "--report", "x.html"),
         ("test", "cases.suite.toml", "--junit", "x.xml"),
+        ("fit", "graph.json", "--to", "r.png", "--values", "n.size", "--renders", "2", "-o", "x.json"),
+        ("fit", "graph.json", "--to", "r.png", "--values", "n.size", "-o", "o.json", "--report", "x.html"),
+        ("export", "input.json", "--to", "isf", "-o", "x.fs"),
+        ("export", "input.json", "--to", "cube", "-o", "x.cube"),
+        ("export", "graph.json", "--to", "web", "-o", "x.html"),
+        ("submit", "graph.json", "-o", "o.####.exr", "--slurm", "x.sh"),
+        ("submit", "graph.json", "-o", "o.####.exr", "--openjd", "x.json"),
+        ("submit", "graph.json", "-o", "o.####.exr", "--actions", "x.yml"),
+        ("explain", "graph.json", "--html", "x.html"),
+        ("reproduce", "r.png", "-o", "x.exr"),
+        ("thumbnail", "graph.json", "x.png"),
     ],
     ids=" ".join,
 )
 def test_no_command_replaces_what_is_no_file(cli, tmp_path, monkeypatch, words):
     monkeypatch.chdir(tmp_path)
     write_graphs(tmp_path)
-    names = ("x.exr", "x.png", "x.0001.exr", "x.mkv", "x.json", "x.html", "x.xml")
+    assert cli("render", "graph.json", "-o", "r.png").code == 0
+    endings = ("exr", "png", "0001.exr", "mkv", "json", "html", "xml", "fs", "cube", "sh", "yml")
+    names = tuple(f"x.{ending}" for ending in endings)
     for name in names:
         make_fifo(tmp_path / name)
     result = cli(*words)
@@ -318,6 +332,8 @@ def test_folders_are_not_made_outside(cli, tmp_path):
     words = ("--set", "n.size=1,2", "--root", jail)
     assert cli("sweep", jail / "graph.json", "-o", jail / "a.png", "--cells", tmp_path / "out", *words).code == 1
     shutil.rmtree(jail / "pictures", ignore_errors=True)
+    for kind in ("glsl", "web"):
+        assert cli("export", jail / "graph.json", "--to", kind, "-o", tmp_path / "out", "--root", jail).code == 1
     (jail / "cases.suite.toml").write_text('[cases.a]\ngraph = "graph.json"\ngolden = "../out/x.exr"\n')
     assert cli("test", jail / "cases.suite.toml", "--update", "--root", jail).code == 1
     assert not (tmp_path / "out").exists()

@@ -145,6 +145,13 @@ def test_frames_that_need_others_are_one_task(cli, shot_folder, graphs):
     assert "--array=0-0\n" in (shot_folder / "job.sh").read_text()
 
 
+def test_a_graph_whose_name_looks_like_an_option_stays_a_file(cli, shot_folder):
+    (shot_folder / "look.json").rename(shot_folder / "-look.json")
+    words = ("./-look.json", "-i", "beauty=in/a b.####.exr", "-o", "f.####.exr", "--slurm", "job.sh")
+    assert cli("submit", *words, "--frames", "1-4").code == 0
+    assert "halation render ./-look.json" in (shot_folder / "job.sh").read_text()
+
+
 def test_a_preset_goes_by_its_name(cli, shot_folder):
     words = ("-i", "beauty=in/a b.####.exr", "-o", "f.####.png", "--frames", "1-9", "--slurm", "job.sh")
     assert cli("submit", "dreamy_glow", *words).code == 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import os
 import re
@@ -16,6 +17,9 @@ from commands import Cli
 from halation.cli import helpers, program
 from halation.errors import HalationError
 from halation.renderer.jobs.render_job import RenderJob
+from unseen_code import write_slow_code, write_sum
+
+needs_slang = pytest.mark.skipif(importlib.util.find_spec("slangpy") is None, reason="slangpy is not installed")
 
 HALATION = [sys.executable, "-m", "halation.cli"]
 ENDLESS = """vec4 spin(vec4 image) {
@@ -113,19 +117,54 @@ def test_code_that_never_ends_stops_all_helpers(tmp_path: Path) -> None:
 
 
 def test_the_timeout_holds_while_code_compiles(tmp_path: Path) -> None:
-    """An array that is read at places known only at run time takes minutes to compile."""
-    code = "vec4 f(vec4 image) {\n float a[16000]; a[int(image.r * 1e6)] = 1.0; return vec4(a[int(image.g)]);\n}"
-    ended = render(graph(tmp_path, code), "-o", tmp_path / "out.exr", "--timeout", 1, "--json")
+    ended = render(graph(tmp_path, write_slow_code()), "-o", tmp_path / "out.exr", "--timeout", 1, "--json")
     assert ended.returncode == 5
     message = json.loads(ended.stdout)["error"]["message"]
     assert message.startswith("node 'user': its code has not ended after 1 seconds")
 
 
 def test_the_memory_limit_holds_while_code_compiles(tmp_path: Path) -> None:
-    code = "vec4 f(vec4 image) {\n float a[16000]; a[int(image.r * 1e6)] = 1.0; return vec4(a[int(image.g)]);\n}"
-    ended = render(graph(tmp_path, code), "-o", tmp_path / "out.exr", "--memory", "1M", "--json")
+    ended = render(graph(tmp_path, write_slow_code()), "-o", tmp_path / "out.exr", "--memory", "1M", "--json")
     assert ended.returncode == 5
     assert json.loads(ended.stdout)["error"]["message"].startswith("node 'user': its code takes more than 0.3 GiB")
+
+
+def write_translated_graph(folder: Path) -> Path:
+    """A graph whose code keeps the translator to WGSL busy for seconds, and no driver."""
+    path = graph(folder, write_sum(3500))
+    tree = json.loads(path.read_text()) | {"inputs": {"image": {"type": "Image", "default": 0.5}}}
+    path.write_text(json.dumps(tree | {"links": tree["links"] | {"user.image": "inputs.image"}}))
+    return path
+
+
+@needs_slang
+def test_the_timeout_holds_while_wgsl_is_made(tmp_path: Path) -> None:
+    """The same code in GLSL, which is written and not compiled, shows that it is the translator that is stopped."""
+    path = write_translated_graph(tmp_path)
+    for kind, code in (("glsl", 0), ("wgsl", 5)):
+        words = [*HALATION, "export", str(path), "--to", kind, "-o", str(tmp_path / kind), "--timeout", "0.5", "--json"]
+        ended = subprocess.run(words, capture_output=True, text=True, timeout=100)
+        assert ended.returncode == code, ended.stderr
+    message = json.loads(ended.stdout)["error"]["message"]
+    assert message.startswith("node 'user': its code has not ended after 0.5 seconds")
+    assert not (tmp_path / "wgsl").exists()
+
+
+@needs_slang
+def test_the_memory_limit_holds_while_wgsl_is_made(tmp_path: Path) -> None:
+    """Half of the memory of a machine, which has 16 MiB here, and none for the driver itself."""
+    program = (
+        "import sys; from halation.resources import heartbeat; from halation.cli.program import run_process; "
+        "heartbeat.OWN_MEMORY = 0; heartbeat.machine_memory = lambda: 16 << 20; sys.exit(run_process(sys.argv[1:]))"
+    )
+    words = ("export", write_translated_graph(tmp_path), "--to", "wgsl", "-o", tmp_path / "wgsl", "--json")
+    ended = subprocess.run(
+        [sys.executable, "-c", program, *map(str, words)], capture_output=True, text=True, timeout=100
+    )
+    assert ended.returncode == 5, ended.stderr
+    message = json.loads(ended.stdout)["error"]["message"]
+    assert message.startswith("node 'user': its code takes more than 0.0 GiB") and message.endswith("code smaller")
+    assert not (tmp_path / "wgsl").exists()
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="it lists the processes of another one")

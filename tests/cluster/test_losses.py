@@ -226,3 +226,69 @@ def find_processes(shot) -> list[str]:
     """Processes that render chunks in the folder of a shot."""
     lines = subprocess.run(["ps", "-eo", "args"], capture_output=True, text=True, check=True).stdout.splitlines()
     return [line for line in lines if "--chunks" in line and str(shot) in line]
+
+
+CRASH_ONCE = """
+import os, sys
+if "--chunks" in sys.orig_argv:
+    from halation.renderer.jobs import item_session
+    plan = item_session.ItemSession.plan_task
+    def plan_task(self, frame):
+        mark = os.environ["CRASH_MARK"]
+        if frame == 6 and not os.path.exists(mark):
+            open(mark, "w").close()
+            os.kill(os.getpid(), 9)
+        return plan(self, frame)
+    item_session.ItemSession.plan_task = plan_task
+"""
+"""The same: a frame that ends its process the first time."""
+
+
+def test_a_video_is_whole_after_its_process_has_ended(halation, shot, make_farm, tmp_path):
+    """All frames are in one file, so those before the crash are rendered again."""
+    pytest.importorskip("av", reason="PyAV is not installed")
+    farm = make_farm()
+    farm.start_worker(**customize(tmp_path / "crash", CRASH_ONCE), CRASH_MARK=str(tmp_path / "crashed"))
+    words = ("shot.json", "--codec", "ffv1", "--deterministic")
+    assert halation("render", *words, "-o", "one.mkv").code == 0
+    ending = halation("render", *words, "-o", "many.mkv", "--cluster", farm.address)
+    assert ending.code == 0 and (tmp_path / "crashed").exists(), ending.err
+    pictures = [read_video(shot / name) for name in ("one.mkv", "many.mkv")]
+    assert len(pictures[0]) == 8 and all((a == b).all() for a, b in zip(*pictures, strict=True))
+
+
+def read_video(path):
+    import av
+
+    with av.open(str(path)) as container:
+        return [frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]
+
+
+def test_the_frame_at_fault_of_a_chain_is_named(halation, shot, farm):
+    """One worker has another picture for frame 3: all frames of the chain fail, and the sentence is about that one."""
+    graph = make_graph()
+    graph["nodes"]["blur"] = {"type": "feedback"}
+    del graph["animation"]
+    (shot / "shot.json").write_text(json.dumps(graph))
+    elsewhere = shot.parent.parent / "volumes"
+    shutil.copytree(shot.parent, elsewhere)
+    (elsewhere / "shot" / "plates" / "p.0003.exr").write_bytes(b"short")
+    words = ("-o", "f.####.exr", "--deterministic", "--cluster", farm.address, "--map", f"{shot.parent}={elsewhere}")
+    ending = halation("render", "shot.json", *words)
+    assert ending.code == 1, ending.err
+    assert f"frame 3: {elsewhere / 'shot' / 'plates' / 'p.0003.exr'}: is another file" in ending.err, ending.err
+    assert "frame 1: one worker renders all frames, and frame 3 cannot be rendered" in ending.err
+
+
+def test_a_chain_with_a_missing_picture_names_each_frame(halation, shot, farm):
+    """The frames before the faulty one are finished; the others are named, although another worker has tried them."""
+    graph = make_graph()
+    graph["nodes"]["blur"] = {"type": "feedback"}
+    del graph["animation"]
+    (shot / "shot.json").write_text(json.dumps(graph))
+    (shot / "plates" / "p.0005.exr").unlink()
+    words = ("-o", "f.####.exr", "--deterministic", "--cluster", farm.address, "--frames", "1-8")
+    ending = halation("render", "shot.json", *words)
+    assert ending.code == 1 and "frame 5: " in ending.err and "p.0005.exr" in ending.err, ending.err
+    assert "frame 6: one worker renders all frames, and frame 5 cannot be rendered" in ending.err
+    assert list_written(shot) == [1, 2, 3, 4]

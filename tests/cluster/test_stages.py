@@ -146,15 +146,30 @@ def test_results_take_a_limited_part_of_the_disk():
 def test_frames_after_a_history_that_ends_its_process_are_given_up():
     queue = open_queue(range(1, 5))
     finish(queue, queue.take(1), frame_bytes=1000)
-    piece = queue.take(1)
-    assert queue.put_suspects(piece.frames, piece, "a") == ()
-    for worker in ("b", "c"):
-        again = queue.take(1)
-        assert again.frames == piece.frames and again.stage.kind == "history"
-        lost = queue.put_suspects(again.frames, again, worker)
+    for worker in ("a", "b", "c"):
+        piece = queue.take(1)
+        assert piece.frames == (3,) and piece.stage.kind == "history"
+        lost = queue.put_suspects(piece.frames, piece, worker)
     assert lost == (4,)
     queue.finish(lost)
     targets = []
     while (assignment := queue.take(1)) is not None:
         targets += assignment.frames
     assert targets == [1, 2, 3]
+
+
+def test_the_frame_of_a_history_that_ends_its_process_is_found():
+    """A piece that ends its process is rendered frame by frame: frames up to the faulty one are not lost."""
+    queue = open_queue(range(1, 11))
+    finish(queue, queue.take(1), frame_bytes=1000)
+    for _ in range(40):
+        assignment = queue.take(1)
+        if assignment is None:
+            break
+        if assignment.stage.kind == "frames":
+            queue.finish(assignment.frames)
+        elif 6 in assignment.frames:
+            queue.finish(queue.put_suspects(assignment.frames, assignment, "a"))
+        else:
+            finish(queue, assignment, frame_bytes=1000)
+    assert len(queue) == 0 and queue.stage_frames["history"] == 5  # frames 1 to 5

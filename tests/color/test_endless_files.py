@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import zipfile
 from pathlib import Path
+from random import Random
 
 import numpy as np
 import pytest
@@ -103,6 +104,26 @@ def test_archives_are_looked_into(tmp_path: Path) -> None:
     assert open_config(tmp_path / "good.ocioz") == 1
     with pytest.raises(GraphError, match=r"bad\.ocioz: its table a\.csp has metadata without an end"):
         open_config(tmp_path / "bad.ocioz")
+
+
+@pytest.mark.parametrize("method", [zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
+def test_damaged_archives(tmp_path: Path, method: int) -> None:
+    """Each kind of compression has exceptions of its own."""
+    with zipfile.ZipFile(tmp_path / "whole.ocioz", "w", method) as archive:
+        archive.writestr("config.ocio", write_config())
+        archive.writestr("a.csp", HEAD + STEPS + "\n" + ROWS)
+    whole, rng, refused = (tmp_path / "whole.ocioz").read_bytes(), Random(method), 0
+    for number in range(60):
+        damaged = bytearray(whole)
+        damaged[rng.randrange(len(damaged))] ^= rng.randrange(1, 256)
+        path = tmp_path / f"{number}.ocioz"
+        path.write_bytes(damaged)
+        try:
+            open_config(path)
+        except GraphError as fault:
+            refused += 1
+            assert path.name in str(fault)
+    assert refused > 20
 
 
 def test_a_config_does_not_lead_to_an_endless_table(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ from random import Random
 from typing import Any
 
 import pytest
-from halation.document import FORMAT, dumps, find_first_difference, loads
+from halation.document import FORMAT, dumps, find_first_difference, loads, records
 from halation.document.canonical import WIDTH, pretty
 from halation.errors import GraphError
 from halation.graph import Control, Graph, Group, Input, Output, Port, Settings, Unknown, problems
@@ -99,6 +99,49 @@ def test_what_is_written_comes_back(seed: int) -> None:
     assert json.loads(text) == json.loads(json.dumps(json.loads(text), sort_keys=True))
     compact = json.dumps(json.loads(text), separators=(",", ":"))
     assert dumps(read(compact)) == text, "formatting of the source does not matter"
+
+
+FILLED: dict[str, Any] = {
+    "settings": {
+        "size": [640, 360],
+        "frames": [2, 9],
+        "rate": 25.0,
+        "preroll": 3,
+        "reference_height": 1080,
+        "overscan": 0.25,
+        "color": {"config": "show.ocio", "working": "ACEScg"},
+        "allow": {"no-output": "a part"},
+    },
+    "inputs": {
+        "beauty": {
+            "type": "Vector2",
+            "file": "a.####.exr",
+            "layer": "Combined",
+            "missing": "hold",
+            "color_space": "ACEScg",
+            "default": [0.5, 0.25],
+            "doc": "The picture.",
+        }
+    },
+    "outputs": {"image": {"type": "Field", "layer": "glow", "view": "none", "overscan": True}},
+    "controls": {"glow": {"target": "gain.gain", "label": "Glow", "doc": "More."}},
+}
+"""Every key of these sections, with another value than its default."""
+
+
+def test_every_key_of_a_section_is_saved() -> None:
+    """What reading knows and writing forgets is lost without a word: `overscan` of an output was."""
+    entries = [
+        FILLED["settings"],
+        *(entry for part in ("inputs", "outputs", "controls") for entry in FILLED[part].values()),
+    ]
+    kinds = (records.SettingsRecord, records.InputRecord, records.OutputRecord, records.ControlRecord)
+    for entry, kind in zip(entries, kinds, strict=True):
+        assert entry.keys() == {*kind.__struct_fields__}, "a key is missing here"
+        assert entry["color"].keys() == {*records.ColorRecord.__struct_fields__} if "color" in entry else True
+    raw = {"halation": FORMAT, "nodes": {"gain": {"type": "gain"}}, **FILLED}
+    saved = json.loads(dumps(read(json.dumps(raw))))
+    assert {name: saved[name] for name in FILLED} == FILLED
 
 
 def sprinkle(rng: Random, tree: Any, path: tuple[str, ...] = ()) -> None:

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from halation.fit.fitting import Comparison, FitTask, fit_values
 from halation.fit.results import FitResult
-from halation.fit.search_space import ValuePattern, find_search_space
+from halation.fit.search_space import find_search_space
 from halation.fit.shown_output import ShownOutput
+from halation.fit.value_patterns import ValuePattern
 from halation.graph import Graph
 from halation.renderer import Renderer, RenderRequest
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from halation.errors import UsageError
-from halation.fit.search_space import ValuePattern, find_search_space
+from halation.fit.search_space import find_search_space
+from halation.fit.value_patterns import ValuePattern
 from halation.graph import Control, Graph, Group, Key, Keys, Port
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.curves import Curves

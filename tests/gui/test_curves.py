@@ -109,7 +109,7 @@ def test_interpolation_by_button_key_and_menu(gui) -> None:
         ui.keys("C")
         assert ui.session.graph.animation[GAIN].key(11).interpolation == "constant"
         ui.click("key one.gain 1", button=1)
-        ui.ctx.item_click("//$FOCUSED/Interpolation")
+        ui.ctx.item_click("//$FOCUSED/keys interpolation")
         ui.click("menu keys.bezier")
         assert ui.session.graph.animation[GAIN].key(1).interpolation == "bezier"
         assert len(ui.session.history.steps) == steps + 3
@@ -261,7 +261,7 @@ def test_an_empty_graph_is_asked_for_a_first_key(gui) -> None:
         ui.session.select([ElementId("one")])
         ui.wait(4)
         ui.click("button keys add")
-        ui.ctx.item_click("//$FOCUSED/gain##one.gain")
+        ui.ctx.item_click("//$FOCUSED/one.gain")
         ui.wait(3)
         assert frames(ui) == (1.0,)
         ui.session.time.seek(10)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from gui_driver import Ui
 from halation import presets
 from halation.editor.shared.window_commands import PanelTitle
-from halation.editor.window.layouts import LAYOUTS
+from halation.editor.window.layouts import LAYOUTS, find_panel
 
 
 def overlap(first: tuple[float, ...], second: tuple[float, ...]) -> bool:
@@ -27,9 +27,8 @@ def test_each_layout_shows_its_panels_side_by_side(gui) -> None:
             assert not any(overlap(a, b) for i, a in enumerate(panels) for b in panels[:i]), name
             for left, top, right, bottom in panels:
                 assert right - left > 150 and bottom - top > 100, (name, shown)
-            windows = ui.window.params.docking_params
             for title in PanelTitle:
-                assert windows.dockable_window_of_name(title).is_visible == (title not in layout.hidden), (name, title)
+                assert find_panel(ui.window.params, title).is_visible == (title not in layout.hidden), (name, title)
             ui.shot(f"layout_{name}.png")
         beside = LAYOUTS["beside"]
         assert beside.find_dock(PanelTitle.GRAPH, "Lower") == "Lower"

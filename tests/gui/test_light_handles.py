@@ -179,3 +179,38 @@ def test_a_double_click_adds_a_light_and_delete_removes_it(gui, path: Path) -> N
         assert len(of(ui)) == 1 and ui.editor.items["lit.lights"] == "point_1"
 
     gui(body, path)
+
+
+def test_sizes_are_dragged_by_their_handles(gui, path: Path) -> None:
+    """Twice as far from the middle is twice the length; of a cone, twice the tangent of its half angle."""
+
+    def body(ui) -> None:
+        steps = start(ui)
+        for number, (name, index, middle, field) in enumerate(
+            (
+                ("lamp_1", POINT, "handle", "reach"),
+                ("lamp_2", SPOT, "goal", "outer"),
+                ("lamp_2", SPOT, "goal", "inner"),
+                ("lamp_3", SPHERE, "handle", "size"),
+            ),
+            1,
+        ):
+            ui.click(f"handle lit.lights {name}")
+            ui.settled()
+            before = getattr(of(ui)[index], field)
+            center, end = ui.at(f"{middle} lit.lights {name}"), ui.at(f"size {field} lit.lights {name}")
+            to = (center[0] + 1.2 * (end[0] - center[0]), center[1] + 1.2 * (end[1] - center[1]))
+            ui.drag(end, to)
+            ui.settled()
+            after = getattr(of(ui)[index], field)
+            wanted = 1.2 * before
+            if middle == "goal":
+                wanted = math.degrees(math.atan(1.2 * math.tan(math.radians(before))))
+            assert after == pytest.approx(wanted, rel=0.02)
+            assert ui.at(f"size {field} lit.lights {name}") == pytest.approx(to, abs=3.0)
+            assert len(ui.session.history.steps) == steps + number
+            ui.shot(f"light_{field}.png")
+        ui.keys("Ctrl+Z")
+        assert of(ui)[SPHERE] == LIGHTS[SPHERE]
+
+    gui(body, path)

@@ -168,7 +168,7 @@ def test_renders_wait_and_are_stopped(gui, long_shot: Path) -> None:
         at = sorted(exports.all, key=lambda one: -one.ended_at).index(first)
         ui.click(f"again {at}")
         ended(ui, 3)
-        assert exports.all[0].state == "done" and exports.all[0].reused >= 1
+        assert exports.all[0].state == "done" and exports.all[0].reused >= 1, exports.all[0].failure
         assert len(list(long_shot.parent.glob("a.*.png"))) == LONG
 
     gui(body, long_shot)
@@ -296,5 +296,59 @@ def test_pictures_that_are_gone_take_nothing_down(gui, shot: Path, tmp_path: Pat
         ui.click("close flipbook")
         ui.settled()
         assert ui.editor.preview.fault("A") is None
+
+    gui(body, shot)
+
+
+def test_many_files_are_rendered_and_counted(gui, shot: Path) -> None:
+    """A folder of pictures goes through the graph; one of them is none, and is named."""
+    photos = shot.parent / "photos"
+    sequence(photos, "plate", 4, 0.8)
+    (photos / "plate.0003.exr").write_bytes(b"no picture")
+
+    def body(ui) -> None:
+        to_renders(ui)
+        ui.click("Frames")
+        ui.click("Frames many files")
+        assert "render fault" in ui.editor.places  # no files are chosen yet
+        ui.click("render many files")
+        ui.type("photos/*.exr", enter=False)
+        ui.until(lambda: "render aim" in ui.editor.places)
+        ui.click("render file image")
+        ui.type(str(shot.parent / "graded" / "{stem}_{index}.exr"))
+        ui.wait(4)
+        ui.shot("form_many_files.png")
+        ui.click("render")
+        (export,) = ui.editor.exports.all
+        ended(ui)
+        assert (export.state, export.failure, export.done) == ("failed", "1 of 4 files failed", 4)
+        assert len(list((shot.parent / "graded").glob("plate*.exr"))) == 3
+        ui.click("notes 0")
+        ui.shot("queue_many_files.png")
+        assert "play 0" not in ui.editor.places  # they are no sequence
+        write_exr(photos / "plate.0003.exr", {"Combined": np.ones((8, 8, 4), np.float32)}, {"Combined": "half"})
+        ui.click("again 0")
+        ended(ui)
+        assert (ui.editor.exports.all[0].state, ui.editor.exports.all[0].reused) == ("done", 3)
+
+    gui(body, shot)
+
+
+def test_a_render_may_go_to_a_cluster(gui, shot: Path) -> None:
+    pytest.importorskip("distributed", reason="Dask is not installed")
+
+    def body(ui) -> None:
+        to_renders(ui)
+        ui.click("render cluster")
+        ui.type("local:2")
+        ui.shot("form_cluster.png")
+        ui.click("render")
+        (export,) = ui.editor.exports.all
+        ui.until(lambda: export.workers > 0 or export.state != "running", 120)
+        ui.wait(3)
+        ui.shot("queue_cluster.png")
+        ended(ui)
+        assert (export.state, export.failure, export.done, export.workers) == ("done", "", 8, 2)
+        assert len(list(shot.parent.glob("comp.*.exr"))) == 8
 
     gui(body, shot)

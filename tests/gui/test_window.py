@@ -9,6 +9,8 @@ import numpy as np
 import OpenImageIO as oiio
 from gui_driver import headless
 from halation import presets
+from halation.editor.shared.window_commands import PanelTitle
+from halation.editor.window.layouts import find_panel
 from halation.editor.window.opening import keep_layout, run
 from halation.editor.window.window import Window
 
@@ -34,7 +36,7 @@ def test_which_panels_are_open_is_remembered(tmp_path) -> None:
     seen = []
 
     def panel(window: Window):
-        return window.params.docking_params.dockable_window_of_name("History")
+        return find_panel(window.params, PanelTitle.HISTORY)
 
     visit(tmp_path, lambda window: seen.append(panel(window).is_visible) or setattr(panel(window), "is_visible", False))
     visit(

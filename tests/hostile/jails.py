@@ -29,8 +29,12 @@ WAYS = (
     "file://{absolute}/",
     "LINK/../link/",
     "chain/",
+    "..%2Fsecret/",
+    "%2e%2e/secret/",
+    "..\\\\secret\\\\",
+    "file:../secret/",
 )
-"""How a path leads out: up, by links, by links to links, whole."""
+"""How a path leads out: up, by links, by links to links, whole, and as libraries may spell it that decode addresses."""
 
 SPECIAL = ("fifo", "socket", "device", "fifolink", "devicelink")
 """What lies in the jail in place of a file of each ending, and would be waited for or never end: see `make_special`."""
@@ -122,6 +126,14 @@ def inner_files(name: str) -> Iterator[tuple[str, dict[str, str], Tree]]:
     yield "material of an OBJ", {"a.obj": obj}, wrap_node(scene, "color")
     textured = {"a.obj": obj.replace(f"{name}.mtl", "a.mtl"), "a.mtl": f"newmtl m\nmap_Kd {name}.png\n"}
     yield "texture of a material", textured, wrap_node(scene, "color")
+    ply = "ply\nformat ascii 1.0\ncomment TextureFile {}.png\nelement vertex 3\n"
+    ply += "".join(f"property float {axis}\n" for axis in "xyzst") + "element face 1\n"
+    ply += "property list uchar int vertex_indices\nend_header\n0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n"
+    scene = {"type": "scene", "values": {"scene": "file", "file": "a.ply"}}
+    yield "texture of a PLY", {"a.ply": ply.format(name)}, wrap_node(scene, "color")
+    shader = {"IMPORTED": {"t": {"PATH": f"{name}.png"}}, "INPUTS": [{"NAME": "inputImage", "TYPE": "image"}]}
+    text = f"/*{json.dumps(shader)}*/\nvoid main() {{ gl_FragColor = IMG_NORM_PIXEL(t, isf_FragNormCoord); }}\n"
+    yield "picture of a shader", {"a.fs": text}, wrap_node({"type": "isf", "file": "a.fs"}, "out")
     gltf = json.loads(images.TEXTS["gltf"])
     gltf["buffers"][0]["uri"] = f"{name}.bin"
     gltf["images"] = [{"uri": f"{name}.png"}]
@@ -237,6 +249,8 @@ COMMANDS = (
     ("render", "jail/graph.json", "-o", "jail/out.exr", "--root", "jail", "--timeout", "8"),
     ("check", "jail/graph.json", "--root", "jail"),
     ("explain", "jail/graph.json", "--root", "jail"),
+    ("export", "jail/graph.json", "--to", "web", "-o", "jail/page.html", "--root", "jail"),
+    ("submit", "jail/graph.json", "-o", "jail/o.####.exr", "--slurm", "jail/job.sh", "--root", "jail"),
 )
 INFO = ("exr", "mov")
 """Endings of what `info` looks at."""

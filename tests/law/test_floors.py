@@ -17,9 +17,9 @@ DATA = ("nodes", "shaders", "presets")
 """What the machine is fed with: every floor may import these packages, and they import none of the floors."""
 
 FLOORS = (
-    "errors", "version", "glsl", "resources", "custom_nodes", "graph", "document", "compiler", "color", "media",
-    "render_layers", "inputs", "lint", "renderer", "scripting", "__init__", "serving", "cluster", "watch", "regression",
-    "export", "fit", "desktop", "authoring", "editor", "cli",
+    "errors", "version", "language", "glsl", "resources", "custom_nodes", "graph", "document", "compiler", "color",
+    "media", "render_layers", "inputs", "lint", "renderer", "scripting", "__init__", "serving", "cluster", "watch",
+    "regression", "export", "fit", "desktop", "authoring", "editor", "cli",
 )  # fmt: skip
 """Parts of the machine from the ground up. `__init__` is the public face of the engine: it stands on the renderer."""
 
@@ -29,6 +29,9 @@ ROOMS = {
     "renderer": ("opengl", "execution", "viewing", "jobs", "provenance"),
 }
 """Folders of a floor, first to last. What lies beside them is what all of them speak of, or puts them together."""
+
+SCRIPTS = "halation.export.python.functions"
+"""Functions whose text goes into scripts: they use what a script may use."""
 
 HOMES = {
     "moderngl": "renderer.opengl",
@@ -131,9 +134,16 @@ def leaves(item: ast.ImportFrom, name: str, own: str) -> bool:
     return inside < 0 or (own == "halation" and inside == 0 and (item.module or "").split(".")[0] in DATA)
 
 
+def test_functions_of_scripts_are_text() -> None:
+    """They are copied into scripts, which stand alone, and nothing in Halation imports them."""
+    assert not {name for name, target in links() if target.startswith(SCRIPTS) and not name.startswith(SCRIPTS)}
+    used = {target.split(".")[0] for name, target in links() if name.startswith(f"{SCRIPTS}.")}
+    assert used - {"halation"} <= {"numpy", "scipy", "OpenImageIO", *sys.stdlib_module_names}
+
+
 @pytest.mark.parametrize("library", HOMES)
 def test_a_library_has_one_home(library: str) -> None:
-    users = {name for name, target in links() if target.split(".")[0] == library}
+    users = {name for name, target in links() if target.split(".")[0] == library and not name.startswith(SCRIPTS)}
     home = f"halation.{HOMES[library]}"
     assert all(f"{name}.".startswith(f"{home}.") for name in users), users
 

@@ -24,6 +24,7 @@ SHIPPED = {
         "**/*.py",
         "py.typed",
         "fit/report.html",
+        "language/catalogue/*.mo",
         "regression/report.html",
         "desktop/icons/*",
         "editor/assets/**/*.png",

@@ -24,6 +24,7 @@ ENVIRONMENT = {
     "color/management.py": "OCIO, the color config of the user, and how much OpenColorIO logs",
     "editor/window/opengl.py": "HALATION_WINDOW: whether the window is visible",
     "editor/window/opening.py": "HALATION_WINDOW: whether the window is visible",
+    "language/system_language.py": "the language of the user",
     "media/limits.py": "HALATION_MAX_PIXELS",
     "regression/parallel.py": "the threads of a worker process, at its start",
     "renderer/execution/progress_beacon.py": "where the watching process reads the heartbeat",
@@ -44,6 +45,7 @@ OPENERS = {
     "resources/atomic_write.py": "it writes, and checks the sandbox and the kind of file first",
     "cli/__init__.py": "the null device, in place of a stream that is closed",
     "cli/serve.py": "a copy of standard output, for replies alone",
+    "cli/watchdog.py": "the same, where another process answers",
     "serving/service.py": "a thumbnail that it has just written to a temporary folder",
     "export/shipped_files.py": "texts of Halation that exports copy",
     "cli/chunk_worker.py": "small files that travel with chunks, in a temporary folder of ours",
@@ -71,6 +73,7 @@ OPENERS = {
     "media/pictures/writer.py": "the temporary file of a `Replacement`",
     "media/pictures/thumbnail.py": "pictures after `check_file`, and the temporary file of a `Replacement`",
     "media/comparison/contact_sheet.py": "the temporary file of a `Replacement`",
+    "language/translation.py": "catalogues of Halation",
     "media/lettering/fonts.py": "fonts of Halation",
     "media/meshes/load.py": "trimesh is given an open file",
     "media/video/index.py": "videos, after `check_file`",
@@ -84,6 +87,7 @@ OPENERS = {
     "regression/report.py": "the template of the page",
     "fit/report.py": "the template of the page",
     "renderer/execution/progress_beacon.py": "the heartbeat",
+    "export/python/library.py": "functions that come with the package",
     "renderer/opengl/cache_archive.py": "files of the driver's cache",
     "renderer/opengl/shader_cache.py": "hashes of programs, in the cache of the driver, which writes there too",
     "watch/reloading.py": "the modules of Halation",
@@ -127,6 +131,29 @@ PROCESS = {
     **{f"cli/{name.replace('-', '_')}.py": why for name, why in WITHOUT_ROOT.items() if name not in WITHOUT_FILES},
 }
 """Modules that make the sandbox of the process."""
+
+CHANGERS = {
+    "authoring/document_pictures.py": "small pictures that the editor keeps",
+    "authoring/recovery/claims.py": "the editor's own files",
+    "authoring/recovery/recovery.py": "the editor's own files",
+    "cli/chunk_worker.py": "a temporary folder of a worker",
+    "cli/demo.py": "the folder whose parent the command has checked",
+    "desktop/installation.py": "files of Halation, in the folder of the desktop",
+    "editor/browser/listing.py": "where the user of the editor says",
+    "editor/exporting/dialog.py": "where the user of the editor says",
+    "editor/toolkit/thumbnails.py": "small pictures that the editor keeps",
+    "editor/window/opening.py": "the editor's own files",
+    "renderer/calibration.py": "the cache of measured devices",
+    "renderer/jobs/shared_results.py": "a folder beside the output, which was checked",
+    "renderer/opengl/cache_archive.py": "the driver's cache",
+    "renderer/opengl/shader_cache.py": "the driver's cache",
+    "resources/atomic_write.py": "temporary files that another process has left",
+    "resources/library_names.py": "a link in a temporary folder",
+    "serving/listening.py": "a socket that nobody listens to, in a place that was checked",
+}
+"""Modules with functions that make or remove files or folders and see no sandbox, and which."""
+
+CHANGING_CALLS = frozenset({"mkdir", "makedirs", "remove", "rmdir", "rmtree", "symlink_to", "unlink"})
 
 CALLS = frozenset({"open", "read_bytes", "read_text", "write_bytes", "write_text", "fdopen", "copyfile", "load_scene"})
 CALLS |= {"CreateFromFile", "FileTransform", "ImageBuf"}
@@ -182,6 +209,23 @@ def test_files_are_opened_in_few_places() -> None:
     openers = set(find_openers())
     assert not openers - OPENERS.keys(), "open files through resources/input_files.py, with a sandbox"
     assert not OPENERS.keys() - openers, "these open no files by themselves: take them off the list"
+
+
+def find_changers() -> Iterator[str]:
+    for file, tree in trees().items():
+        for node in ast.walk(tree):
+            if not isinstance(node, ast.FunctionDef) or "sandbox" in ast.unparse(node):
+                continue
+            calls = (call.func for call in ast.walk(node) if isinstance(call, ast.Call))
+            names = (ast.unparse(call).split(".") for call in calls if isinstance(call, ast.Attribute))
+            if any(name in CHANGING_CALLS and (name != "remove" or owner == "os") for *_, owner, name in names):
+                yield file
+
+
+def test_folders_are_made_in_few_places() -> None:
+    changers = set(find_changers())
+    assert not changers - CHANGERS.keys(), "ask the sandbox before something is made or removed"
+    assert not CHANGERS.keys() - changers, "these make nothing without a sandbox: take them off the list"
 
 
 def test_few_may_do_without_a_sandbox() -> None:

@@ -7,14 +7,23 @@ import json
 import sys
 import tracemalloc
 from collections.abc import Callable
+from pathlib import Path
 
+import numpy as np
 import pytest
 from halation.cli import options
 from halation.document import limits
 from halation.errors import DocumentError
+from halation.inputs.provider import MediaProvider
 from halation.lint.checking import MAX_FINDINGS, CheckReport, GraphChecker
+from halation.lint.compiled import NotingProvider
+from halation.nodes import Kind
+from halation.resources.picture import Picture
+from halation.resources.provider import PictureProbe
 from halation.resources.sandbox import UNRESTRICTED
-from large_graphs import GRAPHS, TEXTS, chain, fan
+from large_graphs import GRAPHS, TEXTS, chain, coded, fan, missing
+from msgspec.structs import replace
+from oiio_pictures import write_picture
 
 
 def check(text: str) -> CheckReport:
@@ -45,6 +54,33 @@ def test_four_times_the_graph_is_four_times_the_work(name: str) -> None:
     assert ratio < 5.0, f"{ratio:.1f} times the calls"
 
 
+def test_a_file_that_is_missing_is_looked_for_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A node that reads a picture asks for three layers of it."""
+    asked_paths: list[str] = []
+    ask = MediaProvider.probe_picture
+
+    def count(self: MediaProvider, picture: Picture) -> PictureProbe:
+        asked_paths.append(picture.path)
+        return ask(self, picture)
+
+    monkeypatch.setattr(MediaProvider, "probe_picture", count)
+    report = check(json.dumps(missing(3)))
+    assert [finding.problem.node for finding in report.findings if finding.code] == ["r0", "r1", "r2"]
+    assert sorted(asked_paths) == ["r0.exr", "r1.exr", "r2.exr"]
+
+
+def test_a_picture_outside_of_its_folder_says_nothing_about_others_of_its_name(tmp_path: Path) -> None:
+    """A shader may read only pictures of its folder; a node may read the same file."""
+    write_picture(tmp_path / "a.exr", np.zeros((2, 2, 4), np.float32))
+    provider = NotingProvider(UNRESTRICTED)
+    picture = Picture(str(tmp_path / "a.exr"), "", Kind.IMAGE, 4)
+    provider.probe_picture(replace(picture, within=str(tmp_path / "shaders")))
+    assert provider.faults.popitem() and provider.probe_picture(picture).size == (2, 2)
+    assert not provider.faults
+    provider.probe_picture(replace(picture, within=str(tmp_path / "shaders")))
+    assert len(provider.faults) == 1
+
+
 @pytest.mark.parametrize(
     ("name", "most"),
     [
@@ -62,6 +98,43 @@ def test_a_node_is_checked_with_few_calls(name: str, most: int) -> None:
     check(json.dumps(GRAPHS[name](5)))
     small, large = (json.dumps(GRAPHS[name](count)) for count in (1000, 2000))
     assert (count_calls(lambda: check(large)) - count_calls(lambda: check(small))) / 1000 < most
+
+
+def test_only_some_missing_files_are_compared_with_what_is_there(tmp_path: Path) -> None:
+    """A folder was listed and compared for each: a minute for 40,000 files."""
+    for number in range(300):
+        (tmp_path / f"s{number}.exr").touch()
+    checker = GraphChecker(sandbox=UNRESTRICTED)
+    few, many = (json.dumps(missing(count)) for count in (500, 1000))
+    few_calls, many_calls = (
+        count_calls(lambda text=t: checker.check_text(text, "a", str(tmp_path))) for t in (few, many)
+    )
+    assert (many_calls - few_calls) / 500 < 3000  # 40,000 where each is compared
+
+
+def test_a_missing_file_still_gets_a_suggestion(tmp_path: Path) -> None:
+    (tmp_path / "r00.exr").touch()
+    report = GraphChecker(sandbox=UNRESTRICTED).check_text(json.dumps(missing(1)), "a", str(tmp_path))
+    assert any("did you mean 'r00.exr'?" in finding.problem.sentence for finding in report.findings)
+
+
+def test_the_code_of_a_graph_is_bounded() -> None:
+    """A second of processor time for each million letters, and a class for each code."""
+    nodes = limits.MAX_CODE // limits.LEAST_CODE
+    (finding,) = check(json.dumps(coded(nodes + 1))).findings
+    assert finding.problem.at == f"nodes.n{nodes}" and "the code of the graph has more than" in finding.problem.sentence
+    graph = coded(3)
+    for number in range(3):
+        graph["nodes"][f"n{number}"]["code"].append("//" + "x" * (limits.MAX_CODE // 3))
+    assert check(json.dumps(graph)).findings[0].problem.at == "nodes.n2"
+
+
+def test_the_same_code_counts_once() -> None:
+    graph = coded(4)
+    for number in range(4):
+        graph["nodes"][f"n{number}"] = graph["nodes"]["n0"] | {"muted": False}
+        graph["nodes"]["n0"]["code"][1:] = ["//" + "x" * (limits.MAX_CODE // 2)]
+    assert check(json.dumps(graph)).code == 0
 
 
 @pytest.mark.parametrize("name", sorted(TEXTS))

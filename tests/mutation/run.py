@@ -3,6 +3,7 @@
     .venv/bin/python tests/mutation/run.py --seed 7 --count 20                  # 20 faults anywhere
     .venv/bin/python tests/mutation/run.py --seed 7 --count 20 renderer editor  # 20 faults in each of these rooms
     .venv/bin/python tests/mutation/run.py --at app/media/goldens.py:105        # all faults of one line
+    .venv/bin/python tests/mutation/run.py --repairs                            # holes that were mended, opened again
 
 The same seed draws the same faults of the same tree. Each is shown only to the tests that `--changed` would run for its
 file, the nearest first, so a fault that is noticed far away counts as a survivor. Ends with 1 if a room's share of
@@ -28,6 +29,7 @@ sys.path.append(str(Path(__file__).parents[1]))
 
 from changes import TESTS, covers
 from mutation.mutants import Mutant, list_mutants
+from mutation.repairs import REPAIRS, Repair
 from selection import LIST
 from source_trees import ROOT, copy_tree, run_in_tree
 
@@ -143,6 +145,40 @@ def _try_once(tree: Path, mutant: Mutant, broken: set[str]) -> Trial:
         path.write_text(source, "utf-8")
 
 
+def try_repair(tree: Path, repair: Repair) -> Trial:
+    """Undo a repair, show that to its test, and take it out of the tree again."""
+    path = tree / repair.file
+    source = path.read_text("utf-8")
+    mutant = repair.find_mutant(source)
+    path.write_text(mutant.apply(source), "utf-8")
+    try:
+        ended = run_in_tree(tree, *_PYTEST, repair.test, timeout=LIMIT)
+    except subprocess.TimeoutExpired:
+        return Trial(mutant, "repairs", True, "no end")
+    finally:
+        path.write_text(source, "utf-8")
+    lines = [line for line in ended.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
+    # A test that is not there, or a tree that cannot be imported, says nothing about the repair.
+    return Trial(mutant, "repairs", ended.returncode == 1, " ".join(lines[:1]) or f"exit code {ended.returncode}")
+
+
+def undo_repairs(names: Iterable[str]) -> int:
+    """Undo all repairs, or those whose name holds one of these words; 1 if a test does not notice one."""
+    chosen = [repair for repair in REPAIRS if not names or any(word in repair.name for word in names)]
+    survivors = 0
+    with tempfile.TemporaryDirectory() as folder:
+        tree = copy_tree(Path(folder) / "tree")
+        for repair in chosen:
+            trial = try_repair(tree, repair)
+            line = (ROOT / repair.file).read_text("utf-8").count("\n", 0, trial.mutant.start) + 1
+            survivors += not trial.was_noticed
+            print(
+                "noticed " if trial.was_noticed else "SURVIVED", f"{repair.name}: {repair.file}:{line} ({trial.words})"
+            )
+    print(f"{len(chosen) - survivors} of {len(chosen)} repairs have a test that fails without them")
+    return int(survivors > 0)
+
+
 def rate(trials: Iterable[Trial]) -> dict[str, tuple[int, int]]:
     """Faults that were noticed, and all faults, by room."""
     scores = defaultdict[str, list[int]](lambda: [0, 0])
@@ -164,6 +200,7 @@ def read_options() -> argparse.Namespace:
     parser.add_argument("rooms", nargs="*", help="folders of app, `nodes` or `shaders`; by default everything")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--count", type=int, default=20, help="faults, of each room that is named")
+    parser.add_argument("--repairs", action="store_true", help="undo repairs; words choose some by their names")
     parser.add_argument("--at", metavar="FILE:LINE", action="append", default=[], help="all faults of a line")
     return parser.parse_args()
 
@@ -172,6 +209,8 @@ def main() -> int:
     """Try faults, list survivors, compare with the floors."""
     options = read_options()
     sys.stdout.reconfigure(line_buffering=True)  # pyright: ignore[reportAttributeAccessIssue]
+    if options.repairs:
+        return undo_repairs(options.rooms)
     mutants = [mutant for place in options.at for mutant in list_line_mutants(place)]
     mutants = mutants if options.at else draw_mutants(options.seed, options.count, tuple(options.rooms))
     trials, broken = list[Trial](), set[str]()

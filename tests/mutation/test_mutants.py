@@ -11,6 +11,7 @@ import pytest
 from import_graph import ROOT
 from mutation import run
 from mutation.mutants import Mutant, list_mutants
+from mutation.repairs import REPAIRS
 from mutation.run import draw_mutants, list_files, list_tests, raise_floors, rate, room_of, try_mutant
 
 PYTHON = '''"""Text with 1 + 1."""
@@ -129,3 +130,15 @@ def test_floors_rise_where_enough_was_tried_and_never_fall() -> None:
     assert raise_floors(floors, scores) == {"graph": 90.0, "color": 90.0, "media": 85.0, "cli": 98.0}
     kept = json.loads(run.FLOORS.read_text("utf-8"))
     assert {*kept} <= {room_of(path) for path in list_files()} and all(0.0 < floor <= 100.0 for floor in kept.values())
+
+
+@pytest.mark.parametrize("repair", REPAIRS, ids=lambda repair: repair.name)
+def test_repairs_can_be_undone(repair) -> None:
+    """The text that a fault replaces, and the test that must notice it, are where they were."""
+    source = (ROOT / repair.file).read_text("utf-8")
+    ast.parse(repair.find_mutant(source).apply(source))
+    file, _, name = repair.test.partition("::")
+    tests = {
+        item.name for item in ast.parse((ROOT / file).read_text("utf-8")).body if isinstance(item, ast.FunctionDef)
+    }
+    assert not name or name in tests

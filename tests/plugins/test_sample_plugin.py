@@ -186,6 +186,15 @@ FAULTY = {
         + SHADER.replace("BODY", "vec4(finite(image).rgb * finite(image).rgb * finite(amount), finite(image).a)"),
         "use straight() and premultiplied() of lib/alpha.glsl",
     ),
+    "overlap": (
+        CLASS.replace("Pointwise", "Draw, Drawn, Filter").replace("SoftGlow(Draw, Drawn, Filter)", "SoftGlow(Filter)")
+        + """
+    def passes(self, draw: Draw) -> Drawn:
+        return draw("acme_glow_soft_glow", self.image, overlap=1, amount=self.amount)
+""",
+        "vec4 acme_glow_soft_glow(float amount) { return image_at(pixel - ivec2(2, 0)); }\n",
+        "the output 'out' reads farther than an `overlap` in passes() says",
+    ),
     "a name of GLSL": (
         CLASS,
         "float acme_glow_sum(float half) { return half; }\n" + SHADER.replace("BODY", "image"),

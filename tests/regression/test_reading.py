@@ -9,7 +9,7 @@ import pytest
 from halation.errors import DocumentError, HalationError, UsageError
 from halation.regression.selection import parse_expression
 from halation.regression.suites import find_suites, load_suite
-from halation.resources.sandbox import UNRESTRICTED
+from halation.resources.sandbox import UNRESTRICTED, Sandbox
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -45,6 +45,8 @@ from hypothesis import strategies as st
         ("[cases.a]\ngraph='g.json'\nerror='x'\ngolden='a.exr'", "cases.a.golden", "gives no picture"),
         ("[cases.a]\ngraph='g.json'\ngolden={a='x.exr', b='x.exr'}", "cases.a.golden", "a file of its own"),
         ("[cases.a]\ngraph='g-*.json'", "cases.a.graph", "no file is called g-*.json"),
+        ("[cases.a]\ngraph='/no/such/folder/*.json'", "cases.a.graph", "no file is called /no/such/folder/*.json"),
+        ("[cases.a]\ngraph='a***.json'", "cases.a.graph", "no file is called a***.json"),
         ("[defaults]\nskip='x'\n[cases.a]\ngraph='g.json'", "defaults.skip", "there is no such key"),
         ("[defaults]\ngolden='x.exr'\n[cases.a]\ngraph='g.json'\n[cases.b]\ngraph='g.json'", "cases.b", "{case}"),
     ],
@@ -55,6 +57,19 @@ def test_a_fault_names_file_and_key(tmp_path: Path, text: str, path: str, said: 
     with pytest.raises(DocumentError) as found:
         load_suite(file, sandbox=UNRESTRICTED)
     assert found.value.file == str(file) and found.value.path == path and said in found.value.fault
+
+
+@pytest.mark.parametrize("pattern", ["../secret/*.json", "{above}/*/*.json"])
+def test_wildcards_tell_nothing_of_what_lies_outside_of_the_root(tmp_path: Path, pattern: str) -> None:
+    """The graphs there could not be read, but each was a case of its name."""
+    (tmp_path / "secret").mkdir()
+    (tmp_path / "secret" / "plan.json").touch()
+    file = tmp_path / "jail" / "a.suite.toml"
+    file.parent.mkdir()
+    file.write_text(f"[cases.a]\ngraph='{pattern.format(above=tmp_path.as_posix())}'")
+    with pytest.raises(DocumentError, match="lies outside of") as refused:
+        load_suite(file, sandbox=Sandbox(str(file.parent)))
+    assert refused.value.path == "cases.a.graph" and "plan" not in str(refused.value)
 
 
 def test_defaults_are_mixed_in(tmp_path: Path) -> None:

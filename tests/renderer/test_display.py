@@ -290,6 +290,33 @@ def test_what_lies_outside_of_the_region_is_dimmed(result, shown):
     assert (got[inside] == 1.0).all() and (got[~inside] < 0.5).all()
 
 
+@pytest.mark.parametrize(("zoom", "step", "repeat"), [(1.0, 1, 1), (3.0, 1, 3), (0.5, 2, 1)])
+def test_what_goes_on_around_the_frame_is_shown_dimmed(result, shown, zoom, step, repeat):
+    """A frame of 12 x 8 whose texture has 4 more pixels on the left, 2 above and 6 to the right, and none below."""
+    pixels = np.ones((10, 22, 4), np.float32)
+    pixels[..., :3] = np.random.default_rng(6).random((5, 11, 3), np.float32).repeat(2, axis=0).repeat(2, axis=1)
+    around = replace(result(pixels), size=(12, 8), full_size=(12, 8), start=(-4, -2))
+    expected = np.full((24, 32, 3), 0.25, np.float32)
+    expected[6:16, 6:28] = 0.35 * pixels[..., :3]
+    expected[8:16, 10:22] = pixels[2:, 4:16, :3]
+    got = shown(around, (round(32 * zoom), round(24 * zoom)), zoom=zoom, **RAW)
+    np.testing.assert_allclose(got, expected[::step, ::step].repeat(repeat, 0).repeat(repeat, 1), atol=1e-6)
+
+
+@pytest.mark.parametrize(("zoom", "stretch"), [(1.0, 2.0), (2.0, 0.5), (3.0, 2.0)])
+def test_pixels_are_shown_in_their_shape(result, shown, zoom, stretch):
+    """An anamorphic picture is as wide as it is meant, and the points of panel and picture agree with it."""
+    pixels = np.random.default_rng(4).random((8, 12, 3))
+    across, down = round(zoom * stretch), round(zoom)
+    size = (12 * across, 8 * down)
+    got = shown(result(pixels), size, zoom=zoom, stretch=stretch, **RAW)
+    np.testing.assert_allclose(got, pixels.repeat(down, axis=0).repeat(across, axis=1), atol=1e-6)
+    look = Look(zoom=zoom, stretch=stretch)
+    assert find_picture_point(look, size, (12, 8), (5 * across, 3 * down)) == (5.0, 3.0)
+    assert find_panel_point(look, size, (12, 8), (5.0, 3.0)) == (5 * across, 3 * down)
+    assert fit_zoom(size, (12, 8), stretch) == zoom
+
+
 # --- two pictures ----------------------------------------------------------------------------------------------------
 
 

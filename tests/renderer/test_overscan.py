@@ -218,8 +218,9 @@ def test_what_does_not_fit_is_refused_with_a_sentence(renderer) -> None:
     graph = chain(AWAY, NODES["exposure"](stops=1.0), BACK)
     device = open_device(sandbox=UNRESTRICTED, memory=60_000)
     small = Renderer(device, sandbox=UNRESTRICTED)
-    with pytest.raises(DeviceError, match="with overscan they cannot be made in parts"):
+    with pytest.raises(DeviceError, match="with overscan they cannot be made in parts") as fault:
         small.render(graph, RenderRequest({"picture": make_picture()}))
+    assert fault.value.node in ("n0", "n1") and f"makes {WIDTH + 13}x{HEIGHT + 10} pixels" in str(fault.value)
     small.close()
 
 

@@ -21,14 +21,11 @@ from halation.nodes.color.exposure import Exposure
 from halation.renderer import Renderer, RenderRequest, open_device
 from halation.renderer.execution.trials import Trial, TrialProcess
 from halation.resources.sandbox import UNRESTRICTED
+from unseen_code import write_product, write_slow_code
 
 PICTURE = np.full((8, 8, 4), 0.5, np.float32)
 REQUEST = RenderRequest({"image": PICTURE})
-SLOW = """vec4 slow(vec4 image) {
-    float a[16000];
-    a[int(image.r * 1e6)] = 1.0;
-    return vec4(a[int(image.g)]);
-}"""
+SLOW = write_slow_code()
 
 
 def graph(code: str) -> Graph:
@@ -43,9 +40,8 @@ def graph(code: str) -> Graph:
     )
 
 
-def effect(number: float) -> Graph:
-    """Code that no driver has seen yet."""
-    return graph(f"vec4 f(vec4 image) {{ return image * {number} + {time.time_ns() % 10**9}.0 * 0.0; }}")
+def effect(factor: float) -> Graph:
+    return graph(write_product(factor))
 
 
 @pytest.fixture

@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 import pytest
+from halation import presets
 from halation.errors import UsageError
 from halation.resources.sandbox import ROOT_VARIABLE, UNRESTRICTED, Sandbox, read_process_sandbox
 from hypothesis import given
@@ -63,7 +64,7 @@ def test_what_may_be_read_lies_inside(tree: Path, parts: list[str], absolute: bo
     os.chdir(tree / "in")
     try:
         path = "/".join([str(tree), *parts] if absolute else parts)
-        refused = UNRESTRICTED.narrow(tree / "in").fault(path)
+        refused = UNRESTRICTED.narrow(tree / "in").find_read_fault(path)
         try:
             truth = Path(path).resolve().is_relative_to((tree / "in").resolve())
         except (OSError, RuntimeError, ValueError):
@@ -79,17 +80,27 @@ def test_what_may_be_read_lies_inside(tree: Path, parts: list[str], absolute: bo
 
 
 def test_without_a_root_all_may_be_read(tree: Path) -> None:
-    assert UNRESTRICTED.fault(tree / "out" / "file") == "" and UNRESTRICTED.fault("/") == ""
+    assert UNRESTRICTED.find_write_fault(tree / "out" / "file") == "" and UNRESTRICTED.find_write_fault("/") == ""
 
 
 def test_a_sandbox_is_made_smaller_only(tree: Path) -> None:
     sandbox = UNRESTRICTED.narrow(tree / "in" / "deep" / "back")
     assert sandbox == Sandbox(str((tree / "in").resolve()))
-    assert sandbox.narrow(tree / "in" / "deep").fault(tree / "in" / "file") and not sandbox.fault(tree / "in" / "file")
+    file = tree / "in" / "file"
+    assert sandbox.narrow(tree / "in" / "deep").find_write_fault(file) and not sandbox.find_write_fault(file)
     with pytest.raises(UsageError, match="lies outside"):
         sandbox.narrow(tree / "out")
     with pytest.raises(UsageError, match="there is no such folder"):
         UNRESTRICTED.narrow(tree / "nowhere")
+
+
+def test_presets_of_the_installation_may_be_read_and_not_written(tree: Path) -> None:
+    sandbox, folder = UNRESTRICTED.narrow(tree / "in"), Path(presets.__file__).parent
+    for path in (presets.paths()[0], presets.sample(), folder / "new.json"):
+        assert not sandbox.find_read_fault(path) and sandbox.find_write_fault(path)
+    assert sandbox.find_read_fault(folder.parent) and sandbox.find_read_fault(folder / ".." / "README.md")
+    (tree / "in" / "linked").symlink_to(presets.sample())
+    assert not sandbox.find_read_fault(tree / "in" / "linked") and sandbox.find_write_fault(tree / "in" / "linked")
 
 
 def test_the_environment_asks_for_one(tree: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,23 +8,16 @@ import sys
 import time
 from pathlib import Path
 
-import numpy as np
 import pytest
 from halation.custom_nodes import Code, node_type
 from halation.graph import Graph, Port
 from halation.nodes.input.constant import Constant
+from unseen_code import write_slow_code, write_sum
 
 
 def chain(code: str) -> Graph:
     graph = Graph().add("plain", Constant()).add("user", node_type(Code("glsl", code))())
     return graph.connect(Port("plain", "out"), Port("user", "image"))
-
-
-def fresh(terms: int) -> str:
-    """Code that is in no cache, and takes the longer to compile the more terms it has."""
-    unique = np.random.default_rng().integers(1, 10**6)
-    total = " + ".join(f"sin(image.r * {number}.{unique})" for number in range(terms))
-    return f"vec4 f(vec4 image) {{ return vec4({total}); }}"
 
 
 def finish(preview) -> None:
@@ -36,9 +29,9 @@ def finish(preview) -> None:
 
 
 def test_no_step_waits_for_a_compiler(preview) -> None:
-    preview.want(chain(fresh(1)), {"A": Port("user", "out")})
+    preview.want(chain(write_sum(1)), {"A": Port("user", "out")})
     finish(preview)  # which reads the shaders of Halation
-    preview.want(chain(fresh(60)), {"A": Port("user", "out")})
+    preview.want(chain(write_sum(60)), {"A": Port("user", "out")})
     waits, end = 0, time.monotonic() + 120.0
     while preview.busy and time.monotonic() < end:
         preview.work(0.01)
@@ -49,8 +42,8 @@ def test_no_step_waits_for_a_compiler(preview) -> None:
 
 
 def test_no_step_waits_for_code_that_nothing_reads(preview) -> None:
-    unread = node_type(Code("glsl", fresh(60)))()
-    preview.want(chain(fresh(1)).add("unread", unread), {"A": Port("user", "out")})
+    unread = node_type(Code("glsl", write_sum(60)))()
+    preview.want(chain(write_sum(1)).add("unread", unread), {"A": Port("user", "out")})
     finish(preview)  # the picture is there, and the other code is tried from now on
     waits, end = 0, time.monotonic() + 120.0
     while preview.work(0.01) and time.monotonic() < end:
@@ -62,7 +55,7 @@ def test_no_step_waits_for_code_that_nothing_reads(preview) -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="it lists the processes of this one")
 def test_a_compiler_that_dies_is_a_fault_of_the_node(preview) -> None:
-    graph = chain("vec4 f(vec4 image) { float a[16000]; a[int(image.r * 1e6)] = 1.0; return vec4(a[int(image.g)]); }")
+    graph = chain(write_slow_code())
     preview.want(graph, {"A": Port("user", "out")})
     preview.work(0.01)
     time.sleep(1.0)
@@ -73,6 +66,6 @@ def test_a_compiler_that_dies_is_a_fault_of_the_node(preview) -> None:
     while preview.work(0.01):  # nobody tries it a second time
         time.sleep(0.005)
     assert "SIGSEGV" in str(preview.faults["user"])
-    preview.want(chain(fresh(2)), {"A": Port("user", "out")})
+    preview.want(chain(write_sum(2)), {"A": Port("user", "out")})
     finish(preview)
     assert preview.find_whole_image("A") is not None and not preview.faults

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 from device_textures import read_texture
-from halation.graph import Graph, Input, Port
-from halation.nodes import Kind
+from halation.graph import Graph, Input, Output, Port, Settings
+from halation.nodes import Kind, catalogue
 from halation.nodes.color.exposure import Exposure
-from previews import PICTURE, chain, count_passes, render_port, request_preview, settle
+from previews import INPUTS, OUT, PICTURE, chain, count_passes, render_port, request_preview, settle
 
 # --- upkeep ----------------------------------------------------------------------------------------------------------
 
@@ -116,3 +116,43 @@ def test_the_sky_does_not_make_a_thumbnail_of_depth_black(preview, engine):
     settle(preview)
     drawn = read_texture(engine.device, preview.thumbnail("inputs.depth")[0], np.uint8)
     assert drawn[2, 3, 0] == 255 and drawn[5, 0, 0] < 10 and 100 < drawn[14, 18, 0] < 155
+
+
+# --- beyond the frame ------------------------------------------------------------------------------------------------
+
+
+def make_moved() -> Graph:
+    """The picture, 10 pixels to the left and 5 up, in a graph that keeps what leaves the frame."""
+    graph = Graph(inputs={"image": Input(Kind.IMAGE)}, outputs={"image": Output()}, settings=Settings(overscan=1.0))
+    graph = graph.add("moved", catalogue()["transform"](position=(-10.0, -5.0), kernel="nearest"))
+    graph = graph.connect(Port("inputs", "image"), Port("moved", "image"))
+    return graph.connect(Port("moved", "out"), Port("outputs", "image"))
+
+
+def test_what_lies_beyond_the_frame_is_there_if_a_panel_shows_it(preview, engine):
+    height, width = PICTURE.shape[:2]
+    preview.want(make_moved(), OUT, bindings=INPUTS, whole=frozenset("A"))
+    settle(preview)
+    shown = preview.find_whole_image("A")
+    assert shown.reaches_beyond and not shown.partial and shown.size == shown.full_size == (width, height)
+    (x, y), made = shown.start, read_texture(engine.device, shown.texture)
+    assert x <= -10 and y <= -5
+    np.testing.assert_array_equal(made[-5 - y : -5 - y + height, -10 - x : -10 - x + width], PICTURE)
+    assert made[-5 - y + height :].max() == 0.0 and made[:, -10 - x + width :].max() == 0.0
+    left, top, *size = shown.part
+    assert (left, top, *size) == (-x, -y, width, height)
+    preview.want(make_moved(), OUT, bindings=INPUTS)
+    settle(preview)
+    assert preview.find_whole_image("A").texture.size == (width, height)
+
+
+def test_a_thumbnail_shows_the_frame(preview, engine):
+    """A white square of the whole frame, half of it moved out: the thumbnail is half black."""
+    graph = make_moved().set(Port("moved", "position"), (PICTURE.shape[1] / 2 + 0.5, 0.0))
+    white = np.ones_like(PICTURE)
+    preview.want(graph, OUT, bindings={"image": white}, whole=frozenset("A"))
+    settle(preview)
+    texture, _ = preview.thumbnail("moved")
+    made = read_texture(engine.device, texture, np.uint8)[..., 0]
+    assert made.shape == PICTURE.shape[:2]
+    assert made[:, 20:].min() > 250 and made[:, :18].max() < 128

@@ -43,7 +43,7 @@ def desk(tmp_path: Path) -> Desk:
 
 def test_all_frames_are_offered_where_there_are_several(desk: Desk, tmp_path: Path) -> None:
     form = RenderForm(desk)
-    assert list(form.extents()) == ["this frame", "all frames", "listed frames"]
+    assert list(form.extents()) == ["this frame", "all frames", "listed frames", "many files"]
     assert (form.extent_of(), form.frames()) == ("all frames", tuple(range(1, 25)))
     assert form.file("image") == tmp_path / "out" / "soft_bloom.####.exr"
     aim = form.targets(0.0)
@@ -54,7 +54,7 @@ def test_all_frames_are_offered_where_there_are_several(desk: Desk, tmp_path: Pa
     assert form.frames() == (7,)
     assert aim_text(form.targets(0.0)) == "Writes soft_bloom.exr"
     desk.session.apply(SetFrameRange(None))
-    assert list(RenderForm(desk).extents()) == ["this frame", "listed frames"]
+    assert list(RenderForm(desk).extents()) == ["this frame", "listed frames", "many files"]
     assert RenderForm(desk).extent_of() == "this frame"
 
 

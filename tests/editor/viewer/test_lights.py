@@ -14,7 +14,7 @@ from halation.authoring.session import Session
 from halation.editor.viewer.dome import direction_at, direction_of, flat, knob_of, middle_of
 from halation.editor.viewer.geometry import Sight
 from halation.editor.viewer.holding import MouseHold, aim
-from halation.editor.viewer.lamp_lines import cone, outline, sides
+from halation.editor.viewer.lamp_outlines import cone, outline, sides
 from halation.editor.viewer.lights import (
     Lamp,
     add_light,

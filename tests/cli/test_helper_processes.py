@@ -1,0 +1,45 @@
+"""`render -j`: helper processes that die, or that do not answer."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+GRAPH = {
+    "halation": 1,
+    "settings": {"size": [640, 360], "frames": [1, 400]},
+    "outputs": {"image": {"type": "Image"}},
+    "nodes": {"noise": {"type": "noise"}, "blur": {"type": "gaussian_blur"}},
+    "links": {"blur.image": "noise.out", "outputs.image": "blur.out"},
+    "animation": {"blur.sigma": {"keys": [{"frame": 1, "value": 5.0}, {"frame": 400, "value": 20.0}]}},
+}
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+@pytest.mark.parametrize("ends_by", ["a helper that dies", "an interrupt"])
+def test_a_helper_that_does_not_answer_is_killed_with_the_others(tmp_path: Path, ends_by: str) -> None:
+    """One helper stands still, as in a long pass of a driver; the command ends all the same, and leaves no part."""
+    (tmp_path / "shot.json").write_text(json.dumps(GRAPH))
+    words = ("render", "shot.json", "-o", "f.####.exr", "-j", "2", "--progress=json")
+    command = [sys.executable, "-m", "halation.cli", *words]
+    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        first, second = json.loads(process.stderr.readline())["processes"]
+        while '"done"' not in process.stderr.readline():
+            assert process.poll() is None
+        os.kill(second, signal.SIGSTOP)
+        (tmp_path / f".halation-{second}-part").write_text("begun")
+        if ends_by == "an interrupt":
+            process.send_signal(signal.SIGINT)
+        else:
+            os.kill(first, signal.SIGKILL)
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == (130 if ends_by == "an interrupt" else 1), said
+    assert "interrupted" in said if ends_by == "an interrupt" else "ended from outside (SIGKILL)" in said, said
+    assert not Path(f"/proc/{second}").exists() and not list(tmp_path.glob(".halation-*"))

@@ -1,0 +1,96 @@
+"""The window that finds values which make the picture like a reference."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import halation as hal
+import numpy as np
+import pytest
+from gui_driver import Ui
+from halation.graph import Port
+
+STOPS = 0.8
+"""What the reference was made with; the document has none."""
+
+
+GRAPH = {
+    "halation": 1,
+    "inputs": {"light": {"type": "Image", "file": "light.exr"}},
+    "nodes": {"expose": {"type": "exposure"}, "grade": {"type": "saturation"}},
+    "outputs": {"image": {"type": "Image"}},
+    "links": {"expose.image": "inputs.light", "grade.image": "expose.out", "outputs.image": "grade.out"},
+}
+
+
+@pytest.fixture
+def reference(tmp_path: Path) -> tuple[Path, Path]:
+    """A graph, and the picture that it makes with a brighter exposure."""
+    graph, target = tmp_path / "graph.json", tmp_path / "reference.exr"
+    light = np.random.default_rng(7).uniform(0.0, 1.0, (54, 96, 3)).astype(np.float32)
+    hal.write(tmp_path / "light.exr", light)
+    hal.write(target, light * np.float32(2.0**STOPS))
+    graph.write_text(json.dumps(GRAPH))
+    return graph, target
+
+
+def open_match(ui: Ui, reference: Path, patterns: str) -> None:
+    ui.settled()
+    ui.window._contexts.dialogs.actions.run("file.match")
+    ui.wait(4)
+    ui.click("match reference")
+    ui.wait(2)
+    browse, ui.editor.dialogs.browse = ui.editor.dialogs.browse, None
+    browse.then(reference)
+    ui.click("match values")
+    ui.type(patterns)
+    ui.wait(3)
+
+
+def test_values_follow_the_search_and_are_one_step(gui, reference) -> None:
+    graph, target = reference
+
+    def body(ui: Ui) -> None:
+        open_match(ui, target, "expose.stops")
+        window, root, steps = ui.window._overlays["Match"], ui.session.root, ui.session.history.position
+        assert window._search.count_numbers(window._patterns) == (1, "")
+        ui.shot("match.png")
+        ui.click("match start")
+        ui.until(lambda: window._search.outcome is not None, seconds=100)
+        ui.wait(4)
+        assert not window._search.outcome.fault
+        ui.shot("match_found.png")
+        assert ui.session.root.value(Port("expose", "stops")) == pytest.approx(STOPS, abs=0.02)
+        assert ui.session.history.position == steps + 1
+        ui.click("match keep")
+        ui.wait(2)
+        ui.session.undo()
+        assert ui.session.root == root
+
+    gui(body, graph)
+
+
+def test_values_are_put_back_and_faults_are_said(gui, reference) -> None:
+    graph, target = reference
+
+    def body(ui: Ui) -> None:
+        open_match(ui, target, "expose.stop")
+        window, root = ui.window._overlays["Match"], ui.session.root
+        count, fault = window._search.count_numbers(window._patterns)
+        assert count == 0 and "did you mean 'expose.stops'" in fault
+        ui.click("match start")
+        ui.wait(2)
+        assert not window._search.is_open, "there is nothing to look for"
+        ui.click("match values")
+        ui.type("expose.*, grade.*")
+        ui.wait(3)
+        ui.click("match start")
+        ui.until(lambda: window._search.outcome is not None, seconds=100)
+        ui.wait(3)
+        assert ui.session.root != root
+        ui.click("match back")
+        ui.wait(3)
+        assert ui.session.root == root and not window._search.is_open
+
+    gui(body, graph)
