@@ -4,7 +4,8 @@
 
 The moment is counted in changes of the folder, not in seconds: it then falls among the writes however slow the machine
 is. Prints how many were killed before they had ended, and how many times there was a file to look at. Modules are
-loaded once: every render is a fork of this process, which never touches OpenGL itself.
+loaded once: every render is a fork of this process, which touches neither OpenGL nor a picture. It must have no thread
+when it forks: a child has none of them, and would wait for their locks for ever.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import random
 import signal
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 
@@ -27,12 +29,27 @@ def main(count: int, words: list[str]) -> None:
 
     folder = Path(words[words.index("-o") + 1]).parent
 
-    def start() -> int:
+    def start(work: Callable[[], int]) -> int:
         child = os.fork()
         if child == 0:
-            os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-            os._exit(run(["render", *words]))
+            try:
+                os._exit(work())
+            finally:
+                os._exit(1)
         return child
+
+    def render() -> int:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+        return run(["render", *words])
+
+    def look(files: list[Path]) -> int:
+        for file in files:
+            picture = oiio.ImageInput.open(str(file))
+            if not picture or picture.read_image() is None:
+                print(f"{file}: {oiio.geterror()}", file=sys.stderr, flush=True)
+                return 1
+            picture.close()
+        return 0
 
     def ended(child: int, changes: int) -> bool:
         """Whether the child came to its end before the folder's listing had changed so many times."""
@@ -47,16 +64,13 @@ def main(count: int, words: list[str]) -> None:
 
     draw, killed, seen = random.Random(7), 0, 0
     for _ in range(count):
-        child = start()
+        child = start(render)
         if not ended(child, draw.randint(1, 6)):
             time.sleep(draw.uniform(0.0, 0.004))
             os.kill(child, signal.SIGKILL)
             killed += os.WIFSIGNALED(os.waitpid(child, 0)[1])
         files = sorted(folder.glob("out.*.exr"))
-        for file in files:
-            picture = oiio.ImageInput.open(str(file))
-            assert picture and picture.read_image() is not None, f"{file}: {oiio.geterror()}"
-            picture.close()
+        assert os.waitpid(start(lambda: look(files)), 0)[1] == 0, "a file is not whole: see above"  # noqa: B023
         seen += bool(files)
         for file in files[draw.randrange(len(files) + 1) :]:  # so that there is something to do again
             file.unlink()
