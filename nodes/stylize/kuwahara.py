@@ -1,7 +1,7 @@
-from math import ceil
+from math import ceil, log2
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Reach, Scalar, Slider, Vector
 
 
 class Kuwahara(Filter):
@@ -26,7 +26,12 @@ class Kuwahara(Filter):
     radius: Annotated[
         float,
         Slider(
-            1.0, 16.0, unit="px", minimum=0.0, maximum=64.0, doc="Size of the brush. The cost grows with its square."
+            1.0,
+            16.0,
+            unit="px",
+            minimum=0.0,
+            maximum=64.0,
+            doc="Size of the brush. The cost grows with its square, that of round brushes only up to 16 px.",
         ),
     ] = 5.0
     sharpness: Annotated[
@@ -64,16 +69,60 @@ class Kuwahara(Filter):
                 "kuwahara_quadrants", tones=tones, edge=self.edge, overlap=radius, result=Vector(width=4), radius=radius
             )
         else:
-            changes = draw("kuwahara_changes", tones=tones, edge=self.edge, overlap=1, result=Vector(width=3))
-            smoothed = draw(
-                "kuwahara_sectors",
-                tones=tones,
-                changes=draw.blur(changes, self.smoothing, self.edge),
-                edge=self.edge,
-                overlap={"tones": ceil(2.0 * self.radius), "changes": 0},
-                result=Vector(width=4),
-                kind=self.kind,
-                radius=self.radius,
-                sharpness=self.sharpness,
-            )
+            smoothed = self._average_sectors(draw, tones)
         return draw.point("kuwahara", tones=smoothed)
+
+    def _average_sectors(self, draw: Draw, tones: Drawn) -> Drawn:
+        changes = draw("kuwahara_changes", tones=tones, edge=self.edge, overlap=1, result=Vector(width=3))
+        flow = draw.blur(changes, self.smoothing, self.edge)
+        brush: dict[str, Scalar] = {"kind": self.kind, "radius": self.radius, "sharpness": self.sharpness}
+        reach = ceil(2.0 * self.radius)
+        if self.radius > _WIDEST_OF_PIXELS:
+            return self._average_cells(draw, tones, flow, brush, reach)
+        return draw(
+            "kuwahara_sectors",
+            tones=tones,
+            changes=flow,
+            edge=self.edge,
+            overlap={"tones": reach, "changes": 0},
+            result=Vector(width=4),
+            **brush,
+        )
+
+    def _average_cells(self, draw: Draw, tones: Drawn, flow: Drawn, brush: dict[str, Scalar], reach: int) -> Drawn:
+        """Far pixels are read as means and variances of cells, from which those of a sector follow as from pixels."""
+        cell = 2 ** ceil(log2(self.radius / _RADIUS_IN_CELLS))
+        around = ceil(reach / cell) + 1
+        padded = draw.pad(tones, (around * cell, around * cell), self.edge)
+        means, variances = draw.several(
+            "kuwahara_cells",
+            (Vector(width=4), Field()),
+            tones=padded,
+            size=(ceil(padded.size[0] / cell), ceil(padded.size[1] / cell)),
+            overlap=Reach.block(cell, cell),
+            cell=cell,
+        )
+        cells = Reach((1.0 / cell, 0.0, around, 0.0, 1.0 / cell, around), (around, around))
+        return draw(
+            "kuwahara_sectors_of_cells",
+            tones=tones,
+            changes=flow,
+            means=means,
+            variances=variances,
+            edge=self.edge,
+            overlap={"tones": _NEAR + cell, "changes": 0, "means": cells, "variances": cells},
+            result=Vector(width=4),
+            **brush,
+            cell=cell,
+            margin=around * cell,
+            near=_NEAR,
+        )
+
+
+_WIDEST_OF_PIXELS = 16.0
+"""Round brushes up to this radius read every pixel, wider ones only those near the center."""
+_RADIUS_IN_CELLS = 8.0
+"""The least number of cells along a radius. On the sample at 2160 lines, with a radius of 32 pixels, FLIP between cells
+and pixels is 0.007 on average; with half as many cells 0.018, with twice as many 0.002 in twice the time."""
+_NEAR = 8
+"""How far around the center each pixel is read, where sectors overlap. Half of it: FLIP 0.008 as above."""

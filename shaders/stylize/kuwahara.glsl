@@ -37,52 +37,127 @@ vec3 kuwahara_changes() {
     return vec3(dot(across, across), dot(across, down), dot(down, down)) / 16.0;
 }
 
-vec4 kuwahara_sectors(int kind, float radius, float sharpness) {
-    // The window is an ellipse along the stroke, with the axes r (1 + A) and r / (1 + A) for the anisotropy A
-    // (Kyprianidis et al. 2009).
-    vec3 change = changes_at(pixel);
+// The window is an ellipse along the stroke, with the axes r (1 + A) and r / (1 + A) for the anisotropy A (Kyprianidis et
+// al. 2009). A sector is where along + zeta > eta across^2 (Kyprianidis et al. 2010); its edges cross at 3/16 of a half
+// turn.
+struct kuwahara_Window {
+    mat2 to_disc;
+    ivec2 reach;
+    float zeta, eta;
+};
+
+kuwahara_Window kuwahara_window(vec3 change, int kind, float radius) {
     float anisotropy = kind == KIND_ANISOTROPIC ? structure_anisotropy(change) : 0.0;
     vec2 along = anisotropy > 0.0 ? structure_across(change).yx * vec2(-1.0, 1.0) : vec2(1.0, 0.0);
     vec2 axes = radius * vec2(1.0 + anisotropy, 1.0 / (1.0 + anisotropy));
-    vec2 reach = vec2(length(axes * along), length(axes * along.yx));
     mat2 to_disc = mat2(along.x / axes.x, -along.y / axes.y, along.y / axes.x, along.x / axes.y);
-
-    // A sector is where along + zeta > eta across^2 (Kyprianidis et al. 2010); its edges cross at 3/16 of a half turn.
     const float edge_turn = 0.1875 * kuwahara_pi;
     float zeta = 2.0 / radius, eta = (zeta + cos(edge_turn)) / (sin(edge_turn) * sin(edge_turn));
-    const mat2 eighth = mat2(0.70710678, -0.70710678, 0.70710678, 0.70710678);
+    return kuwahara_Window(to_disc, ivec2(length(axes * along), length(axes * along.yx)), zeta, eta);
+}
 
-    vec4 here = tones_at(pixel), sums[8];
-    float totals[8], squares[8], shares[8];
-    for (int k = 0; k < 8; ++k) sums[k] = vec4(0.0), totals[k] = squares[k] = 0.0;
-    for (int y = -int(reach.y); y <= int(reach.y); ++y)
-        for (int x = -int(reach.x); x <= int(reach.x); ++x) {
-            vec2 v = to_disc * vec2(x, y);
-            float square = dot(v, v), share = 0.0;
-            if (square > 1.0) continue;
-            for (int k = 0; k < 8; ++k) {
-                float inside = max(v.x + zeta - eta * v.y * v.y, 0.0);
-                shares[k] = inside * inside;
-                share += shares[k];
-                v = eighth * v;
-            }
-            vec4 other = tones_at(pixel + ivec2(x, y)) - here;
-            float weight = exp(-3.125 * square) / share;  // a Gaussian whose sigma is 0.4 of the radius
-            for (int k = 0; k < 8; ++k) {
-                sums[k] += weight * shares[k] * other;
-                squares[k] += weight * shares[k] * dot(other.rgb, other.rgb);
-                totals[k] += weight * shares[k];
-            }
-        }
+// Weighted sums over each of the eight sectors: of tones, of their squares, of weights. Sectors along the axes of the
+// ellipse come first, those between them second.
+struct kuwahara_Sectors {
+    mat4 sums[2];
+    vec4 squares[2], totals[2];
+};
 
+kuwahara_Sectors kuwahara_empty() {
+    kuwahara_Sectors sectors;
+    for (int turn = 0; turn < 2; ++turn) {
+        sectors.sums[turn] = mat4(0.0);
+        sectors.squares[turn] = sectors.totals[turn] = vec4(0.0);
+    }
+    return sectors;
+}
+
+// How much of a place lies in each of four sectors, which are a quarter turn apart.
+vec4 kuwahara_inside(kuwahara_Window window, vec2 v) {
+    vec4 inside = max(vec4(v, -v) + window.zeta - window.eta * (v * v).yxyx, 0.0);
+    return inside * inside;
+}
+
+// Adds `count` pixels around `away`, whose mean differs by `other` and which vary by `variance`.
+void kuwahara_add(
+    inout kuwahara_Sectors sectors, kuwahara_Window window, vec2 away, vec4 other, float variance, float count
+) {
+    vec2 v = window.to_disc * away;
+    float distance_squared = dot(v, v);
+    if (distance_squared > 1.0) return;
+    vec4 inside[2];
+    inside[0] = kuwahara_inside(window, v);
+    inside[1] = kuwahara_inside(window, sqrt(0.5) * vec2(v.x + v.y, v.y - v.x));
+    float share = dot(inside[0] + inside[1], vec4(1.0));
+    float weight = count * exp(-3.125 * distance_squared) / share;  // a Gaussian whose sigma is 0.4 of the radius
+    float square = dot(other.rgb, other.rgb) + variance;
+    for (int turn = 0; turn < 2; ++turn) {
+        vec4 weights = weight * inside[turn];
+        sectors.sums[turn] += outerProduct(other, weights);
+        sectors.squares[turn] += weights * square;
+        sectors.totals[turn] += weights;
+    }
+}
+
+// The mean of all sectors, which count less the more they vary.
+vec4 kuwahara_calmest(kuwahara_Sectors sectors, float sharpness) {
     vec4 sum = vec4(0.0);
     float total = 0.0;
-    for (int k = 0; k < 8; ++k) {
-        vec4 mean = sums[k] / totals[k];
-        float deviation = sqrt(max(squares[k] / totals[k] - dot(mean.rgb, mean.rgb), 0.0));
-        float calm = 1.0 / (1.0 + pow(min(255.0 * deviation, 1e3), sharpness));
-        sum += calm * mean;
-        total += calm;
-    }
-    return here + sum / total;
+    for (int turn = 0; turn < 2; ++turn)
+        for (int k = 0; k < 4; ++k) {
+            vec4 mean = sectors.sums[turn][k] / sectors.totals[turn][k];
+            float variance = sectors.squares[turn][k] / sectors.totals[turn][k] - dot(mean.rgb, mean.rgb);
+            float calm = 1.0 / (1.0 + pow(min(255.0 * sqrt(max(variance, 0.0)), 1e3), sharpness));
+            sum += calm * mean;
+            total += calm;
+        }
+    return sum / total;
+}
+
+vec4 kuwahara_sectors(int kind, float radius, float sharpness) {
+    kuwahara_Window window = kuwahara_window(changes_at(pixel), kind, radius);
+    kuwahara_Sectors sectors = kuwahara_empty();
+    vec4 here = tones_at(pixel);
+    for (int y = -window.reach.y; y <= window.reach.y; ++y)
+        for (int x = -window.reach.x; x <= window.reach.x; ++x)
+            kuwahara_add(sectors, window, vec2(x, y), tones_at(pixel + ivec2(x, y)) - here, 0.0, 1.0);
+    return here + kuwahara_calmest(sectors, sharpness);
+}
+
+// The mean and the variance of the tones in a square.
+void kuwahara_cells(int cell, out vec4 mean, out float variance) {
+    vec4 here = tones_at(cell * pixel), sum = vec4(0.0);
+    float squares = 0.0, count = float(cell * cell);
+    for (int y = 0; y < cell; ++y)
+        for (int x = 0; x < cell; ++x) {
+            vec4 other = tones_at(cell * pixel + ivec2(x, y)) - here;
+            sum += other;
+            squares += dot(other.rgb, other.rgb);
+        }
+    sum /= count;
+    mean = here + sum;
+    variance = max(squares / count - dot(sum.rgb, sum.rgb), 0.0);
+}
+
+// As above, but only the cells that are at most `near` away are read pixel by pixel. `margin` was added around the cells.
+vec4 kuwahara_sectors_of_cells(int kind, float radius, float sharpness, int cell, int margin, int near) {
+    kuwahara_Window window = kuwahara_window(changes_at(pixel), kind, radius);
+    kuwahara_Sectors sectors = kuwahara_empty();
+    vec4 here = tones_at(pixel);
+    ivec2 middle = pixel + margin;
+    ivec2 first_near = (middle - near) / cell, last_near = (middle + near) / cell;
+    for (int y = first_near.y * cell - middle.y; y < (last_near.y + 1) * cell - middle.y; ++y)
+        for (int x = first_near.x * cell - middle.x; x < (last_near.x + 1) * cell - middle.x; ++x)
+            kuwahara_add(sectors, window, vec2(x, y), tones_at(pixel + ivec2(x, y)) - here, 0.0, 1.0);
+    ivec2 first = (middle - window.reach) / cell, last = (middle + window.reach) / cell;
+    for (int y = first.y; y <= last.y; ++y)
+        for (int x = first.x; x <= last.x; ++x) {
+            ivec2 place = ivec2(x, y);
+            if (all(greaterThanEqual(place, first_near)) && all(lessThanEqual(place, last_near))) continue;
+            vec2 away = (vec2(place) + 0.5) * float(cell) - vec2(middle) - 0.5;
+            kuwahara_add(
+                sectors, window, away, means_at(place) - here, variances_at(place), float(cell * cell)
+            );
+        }
+    return here + kuwahara_calmest(sectors, sharpness);
 }
