@@ -1,7 +1,8 @@
 """The same look at every size: each preset at two heights, the larger picture shrunk to the smaller one.
 
 Every day 270 and 540 lines of presets of each kind; `--nightly` 540 and 2160 lines of all presets. Inputs are the
-sample enlarged; the smaller one is the larger one averaged, so both show the same scene.
+sample enlarged: the smaller picture is the larger one averaged, and data are those of surfaces that go on between the
+pixels of the sample, so both show the same scene.
 
 A tone curve and an average do not commute: `agx_look`, which has no length, already differs by 0.018 on this sample.
 Presets that draw lines, dots or grains of a few pixels differ more in FLIP, since a small picture cannot hold their
@@ -10,11 +11,13 @@ edges; of these the dots are counted.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import cv2
 import numpy as np
 import pytest
+from enlarged_layers import enlarge_data, enlarge_light
 from halation import document, media
 from halation.graph import Graph, Input
 from halation.media.comparison.contact_sheet import show_light
@@ -34,11 +37,6 @@ LINES = {"blueprint": 0.2, "neon_edges": 0.07, "hologram": 0.04, "emboss_and_edg
 0.19 (hologram) while their lines were a pixel wide at every size."""
 DOTS = ("newspaper_print", "comic_ink", "risograph")
 
-BRUSHES = ("comic_ink", "ink_boil", "oil_painting", "toon_ink", "watercolor")
-"""Looks with `kuwahara`, whose cost grows with the fourth power of the height: four times as many lines have sixteen
-times as many pixels, and sixteen times as many under each brush. On one core comic_ink took 0.3 s at 270 lines, 4.3 s
-at 540, and so takes about 19 minutes at 2160."""
-
 
 @cache
 def load_preset(name: str) -> Graph:
@@ -51,27 +49,25 @@ def read_input(name: str, end: Input) -> Array:
     return np.asarray(pixels.array, np.float32)
 
 
-def enlarge(picture: Array, kind: Kind, height: int, step: int) -> Array:
-    """A picture `height` pixels high: an enlarged one, averaged by `step`. Data keeps its numbers."""
-    is_data = kind is not Kind.IMAGE
-    size = (round(picture.shape[1] * height * step / picture.shape[0]), height * step)
-    large = cv2.resize(picture, size, interpolation=cv2.INTER_NEAREST if is_data else cv2.INTER_CUBIC)
-    if not is_data:
-        large = np.maximum(large, 0.0)
-    if step == 1:
-        return large
-    size = (size[0] // step, height)
-    return cv2.resize(large, size, interpolation=cv2.INTER_NEAREST if is_data else cv2.INTER_AREA)
+def enlarge(name: str, end: Input, height: int, step: int) -> Array:
+    """An input of a preset as a render of `height` lines has it: see enlarged_layers.py."""
+    layer = read_input(name, end)
+    if end.kind is Kind.IMAGE:
+        return enlarge_light(layer, height, step)
+    depth, surface = (
+        read_input(name, replace(end, layer=other, kind=Kind.FIELD)) for other in ("Depth", "Object Index")
+    )
+    if end.layer == "Normal":
+        length = np.linalg.norm(layer, axis=-1, keepdims=True)
+        turned, length = (enlarge_data(data, depth, surface, height, step) for data in (layer, length))
+        return turned * length / np.maximum(np.linalg.norm(turned, axis=-1, keepdims=True), 1e-6)
+    return enlarge_data(layer, depth, surface, height, step)
 
 
 def render_at(renderer: Renderer, name: str, height: int, step: int = 1, scale: float = 1.0) -> Array:
     """The third frame of a preset as light of the display, at a height; inputs are made at `step` times that."""
     graph = load_preset(name)
-    arrays = {
-        key: enlarge(read_input(name, end), end.kind, height, step)
-        for key, end in graph.inputs.items()
-        if key != "environment"
-    }
+    arrays = {key: enlarge(name, end, height, step) for key, end in graph.inputs.items() if key != "environment"}
     size = None
     if graph.settings.size:
         size = (round(graph.settings.size[0] * height / graph.settings.size[1]), height)
@@ -146,10 +142,8 @@ def test_lengths_are_meant_for_1080_lines(name: str) -> None:
 
 
 @pytest.mark.nightly
-@pytest.mark.parametrize(
-    "name",
-    [pytest.param(name, marks=pytest.mark.timeout(3600 if name in BRUSHES else 900)) for name in PRESETS],
-)
+@pytest.mark.timeout(900)
+@pytest.mark.parametrize("name", PRESETS)
 def test_every_preset_at_540_and_2160_lines(name: str, renderer: Renderer) -> None:
     """A third of the presets has lines, dots or hard edges, which FLIP sees in the smaller picture."""
     difference, small, large = measure_sizes(renderer, name, 540, 2160)
