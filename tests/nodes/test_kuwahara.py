@@ -141,13 +141,15 @@ def test_no_radius_changes_nothing():
     assert Kuwahara(radius=0.0).identity() == "image"
 
 
-@pytest.mark.parametrize(("kind", "radius"), [("generalized", 17.0), ("anisotropic", 40.0)])
+@pytest.mark.parametrize(("kind", "radius"), [("generalized", 17.0), ("anisotropic", 24.0)])
 def test_a_wide_brush_of_cells_paints_as_one_of_pixels(run, hdr, kind, radius):
     """Means and variances of cells are those of their pixels; only the weights of far pixels are a little coarser."""
-    picture = gaussian_filter(np.minimum(hdr(97, 61, opaque=True), 1.0), (2.0, 2.0, 0))
-    found = run(Kuwahara(kind=kind, radius=radius, smoothing=4.0, edge="wrap"), {"image": picture})
-    wrap = SimpleNamespace(scipy="wrap", numpy="wrap")
-    expected = soft(tones_of(picture), radius, 8.0, 4.0 if kind == "anisotropic" else None, wrap, step=16)
+    picture = np.minimum(hdr(97, 61, opaque=True), 1.0)
+    picture[:, :40, :3] *= 0.2
+    picture = gaussian_filter(picture, (2.0, 2.0, 0))
+    found = run(Kuwahara(kind=kind, radius=radius, smoothing=4.0), {"image": picture})
+    clamp = SimpleNamespace(scipy="nearest", numpy="edge")
+    expected = soft(tones_of(picture), radius, 8.0, 4.0 if kind == "anisotropic" else None, clamp, step=16)
     difference = np.abs(tones_of(found)[::16, ::16] - expected)
     assert expected[..., :3].std() > 0.02
-    assert difference.mean() <= 5e-4
+    assert difference.mean() <= 1e-3
