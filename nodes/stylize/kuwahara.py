@@ -1,7 +1,7 @@
 from math import ceil, log2
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Reach, Scalar, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Reach, Slider, Vector
 
 
 class Kuwahara(Filter):
@@ -75,7 +75,7 @@ class Kuwahara(Filter):
     def _average_sectors(self, draw: Draw, tones: Drawn) -> Drawn:
         changes = draw("kuwahara_changes", tones=tones, edge=self.edge, overlap=1, result=Vector(width=3))
         flow = draw.blur(changes, self.smoothing, self.edge)
-        brush: dict[str, Scalar] = {"kind": self.kind, "radius": self.radius, "sharpness": self.sharpness}
+        brush: dict[str, Any] = {"kind": self.kind, "radius": self.radius, "sharpness": self.sharpness}
         reach = ceil(2.0 * self.radius)
         if self.radius > _WIDEST_OF_PIXELS:
             return self._average_cells(draw, tones, flow, brush, reach)
@@ -89,7 +89,7 @@ class Kuwahara(Filter):
             **brush,
         )
 
-    def _average_cells(self, draw: Draw, tones: Drawn, flow: Drawn, brush: dict[str, Scalar], reach: int) -> Drawn:
+    def _average_cells(self, draw: Draw, tones: Drawn, flow: Drawn, brush: dict[str, Any], reach: int) -> Drawn:
         """Far pixels are read as means and variances of cells, from which those of a sector follow as from pixels."""
         cell = 2 ** ceil(log2(self.radius / _RADIUS_IN_CELLS))
         around = ceil(reach / cell) + 1
