@@ -21,7 +21,7 @@ from ..resources.sandbox import read_process_sandbox
 from ..resources.user_folders import list_preset_folders, state_folder
 from ..version import VERSION
 from .options import AsJson
-from .outcome import print_json
+from .outcome import print_json, write_count
 from .plugins import list_refused_plugins
 
 State = Literal["ok", "note", "fault"]
@@ -35,6 +35,7 @@ _LITTLE_MEMORY = 2 << 30
 _EXTRAS = (
     ("video", "av", "videos cannot be read or written"),
     ("denoise", "pyoidn", "the node denoise cannot work"),
+    ("cluster", "distributed", "frames cannot be rendered on other machines"),
     ("fit", "cma", "halation fit cannot work"),
     ("wgsl", "slangpy", "halation export --to wgsl and --to reshade cannot work"),
 )
@@ -52,9 +53,9 @@ class MachineCheck(Struct, frozen=True):
 def doctor(as_json: AsJson = False) -> int:
     """Check what Halation needs on this machine.
 
-    It looks at packages, OpenGL, memory, disk, folders, color management and plug-ins, and says what to do where
-    something is missing. Paste its output into reports of bugs: paths in your home folder are shortened. The exit code
-    is 1 if something does not work.
+    It looks at packages, OpenGL, memory, disk, folders, caches, fonts, color management and plug-ins, and says what to
+    do where something is missing. Paste its output into reports of bugs: paths in your home folder are shortened. The
+    exit code is 1 if something does not work.
     """
     checks = list(examine_machine())
     if as_json:
@@ -76,6 +77,8 @@ def examine_machine() -> Iterator[MachineCheck]:
     yield _examine_display()
     yield _examine_memory()
     yield from _examine_folders()
+    yield _examine_shader_cache()
+    yield _examine_fonts()
     yield _examine_color()
     yield from _examine_plugins()
 
@@ -159,6 +162,34 @@ def _examine_folder(topic: str, folder: Path) -> MachineCheck:
     if free < _LITTLE_DISK:
         return MachineCheck(topic, "note", f"{sentence}: make room before long renders")
     return MachineCheck(topic, "ok", sentence)
+
+
+def _examine_shader_cache() -> MachineCheck:
+    """Where Mesa keeps compiled shaders; other drivers have folders of their own and need no help."""
+    from ..renderer.opengl.shader_cache import DISABLING, find_base_folder
+
+    if folder := find_base_folder():
+        return _examine_folder("shader cache", folder)
+    if any(name in os.environ for name in DISABLING):
+        sentence = f"each start compiles all shaders again: unset {' and '.join(DISABLING)}"
+        return MachineCheck("shader cache", "note", sentence)
+    return MachineCheck("shader cache", "ok", "that of the driver")
+
+
+def _examine_fonts() -> MachineCheck:
+    """The font that comes with Halation, and those that are installed."""
+    from halation.nodes import Typeface
+
+    from ..media.lettering.fonts import list_installed_families, load_font
+
+    try:
+        font = load_font(Typeface(), read_process_sandbox())
+    except (HalationError, OSError) as fault:
+        return MachineCheck("fonts", "fault", f"{fault}: install Halation again")
+    families = list_installed_families()
+    return MachineCheck(
+        "fonts", "ok", f"{font.name}, and {write_count(len(families), 'family', 'families')} of this system"
+    )
 
 
 def _examine_color() -> MachineCheck:

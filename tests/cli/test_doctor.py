@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import shutil
 from importlib import metadata
 
 import pytest
 from halation.cli import doctor
+from halation.media.lettering import fonts
 from halation.renderer import open_device
 from halation.resources import machine
 from halation.resources.sandbox import UNRESTRICTED
@@ -59,6 +61,25 @@ def test_a_config_that_is_missing(cli, monkeypatch):
     assert cli("doctor").code == 1
     state, sentence = states(cli)["color"]
     assert state == "fault" and "/nowhere/config.ocio" in sentence and "unset OCIO" in sentence
+
+
+def test_fonts_of_the_system_are_counted(cli, home, monkeypatch):
+    shutil.copy(fonts.FONTS / "DejaVuSansMono.ttf", home / "own.ttf")
+    monkeypatch.setattr(fonts, "_list_folders", lambda: [str(home)])
+    assert states(cli)["fonts"] == ("ok", "DejaVu Sans, and 1 family of this system")
+    monkeypatch.setattr(fonts, "FONTS", home / "nowhere")
+    fonts._load.cache_clear()
+    assert states(cli)["fonts"][0] == "fault"
+
+
+def test_a_cache_of_shaders_that_is_switched_off(cli, home, monkeypatch):
+    monkeypatch.delenv("MESA_SHADER_CACHE_DISABLE", raising=False)
+    monkeypatch.setenv("MESA_SHADER_CACHE_DIR", str(home / "cache"))
+    state, sentence = states(cli)["shader cache"]
+    assert state == "ok" and sentence.startswith("~/cache, ")
+    monkeypatch.setenv("MESA_SHADER_CACHE_DISABLE", "true")
+    state, sentence = states(cli)["shader cache"]
+    assert state == "note" and "unset MESA_SHADER_CACHE_DISABLE" in sentence
 
 
 def test_no_opengl(cli, monkeypatch):

@@ -119,7 +119,7 @@ def _read_name(face: Any) -> str:
 
 def _find_family(family: str, typeface: Typeface, sandbox: Sandbox) -> str:
     """The installed file of a family whose weight is the nearest."""
-    families = _list_families(tuple(_list_folders()))
+    families = list_installed_families()
     files = families.get(family)
     if not files:
         guess = find_similar_name(family, [*families, *PACKED])
@@ -128,6 +128,11 @@ def _find_family(family: str, typeface: Typeface, sandbox: Sandbox) -> str:
     path = min(files, key=lambda file: abs(file[0] - typeface.weight))[1]
     sandbox.check(path)
     return path
+
+
+def list_installed_families() -> dict[str, list[tuple[float, str]]]:
+    """The upright fonts of this system, by family in small letters: their weights and files, in the order of names."""
+    return _read_families(tuple(_list_folders()))
 
 
 def _list_folders() -> Iterator[str]:
@@ -147,8 +152,7 @@ def _list_folders() -> Iterator[str]:
 
 
 @lru_cache(maxsize=1)
-def _list_families(folders: tuple[str, ...]) -> dict[str, list[tuple[float, str]]]:
-    """The upright fonts in folders, by family in small letters: their weights and files, in the order of names."""
+def _read_families(folders: tuple[str, ...]) -> dict[str, list[tuple[float, str]]]:
     families = dict[str, list[tuple[float, str]]]()
     for folder in folders:
         for file in sorted(Path(folder).rglob("*")):
