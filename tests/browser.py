@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import fcntl
 import json
 import os
 import shutil
@@ -22,8 +23,13 @@ WORDS = (
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
     "--disk-cache-size=1",
+    "--use-fake-device-for-media-stream",
+    "--use-fake-ui-for-media-stream",
 )
-"""SwiftShader draws in the processor, the same on every machine."""
+"""SwiftShader draws in the processor, the same on every machine. The camera is a moving picture of Chromium."""
+
+_ABOVE = 10
+"""Ends of pipes are copied to numbers from here on, so that none of them is 3 or 4 already."""
 
 
 class Browser:
@@ -33,14 +39,14 @@ class Browser:
         assert CHROMIUM is not None
         self.messages: list[str] = []
         self._profile = tempfile.TemporaryDirectory(prefix="browser-", ignore_cleanup_errors=True)
-        to_read, self._commands = os.pipe()
-        answers, to_write = os.pipe()
+        (read_end, self._commands), (answers, write_end) = os.pipe(), os.pipe()
+        ends = [fcntl.fcntl(end, fcntl.F_DUPFD, _ABOVE) for end in (read_end, write_end)]
         words = [CHROMIUM, *WORDS, f"--user-data-dir={self._profile.name}", f"--window-size={width},{height}"]
         # The browser reads its file 3 and writes its file 4.
-        shell = ["sh", "-c", f'exec "$@" 3<&{to_read} 4>&{to_write} 2>/dev/null', "sh", *words, "about:blank"]
-        self._process = subprocess.Popen(shell, pass_fds=(to_read, to_write), start_new_session=True)
-        os.close(to_read)
-        os.close(to_write)
+        shell = ["bash", "-c", 'exec "$@" 3<&{} 4>&{} 2>/dev/null'.format(*ends), "bash", *words, "about:blank"]
+        self._process = subprocess.Popen(shell, pass_fds=ends, start_new_session=True)
+        for end in (read_end, write_end, *ends):
+            os.close(end)
         self._answers = os.fdopen(answers, "rb")
         self._number, self._rest, self._is_loaded = 0, b"", False
         targets = self._call("Target.getTargets")["targetInfos"]

@@ -16,6 +16,12 @@ from .package import Package, assemble_package
 from .package.dialects import write_es300
 from .shipped_files import read_shipped_text
 
+SCRIPTS = ("package_values.js", "read_package.js", "page.js")
+"""The scripts of a page, each of which needs those before it."""
+
+_MODULE_WORDS = re.compile(r"^(export |import .*\n)", re.MULTILINE)
+"""What joins modules that are files: a page has one script."""
+
 
 def export_page(order: ExportOrder) -> ExportReport:
     """Write the page. Raises GraphError, OutputError."""
@@ -52,13 +58,13 @@ def make_page(package: Package, order: ExportOrder) -> str:
         "content": b64encode(zlib.compress(content.encode(), 9)).decode(),
         "blobs": [[strides[at], _pack(blob, strides[at])] for at, blob in enumerate(package.blobs)],
     }
-    reader = read_shipped_text("read_package.js").replace("export ", "")
+    modules = "\n".join(read_shipped_text(name) for name in SCRIPTS)
     filled = {
         "TITLE": html.escape(order.name.replace("_", " ").capitalize()),
         "ABOUT": html.escape(find_about(order.graph).doc),
         "GENERATOR": f"Made by {document['made_by']}",
         "PACKAGE": json.dumps(packed, separators=(",", ":")),
-        "SCRIPT": f"{reader}\n{read_shipped_text('page.js')}",
+        "SCRIPT": _MODULE_WORDS.sub("", modules),
     }
     # In one pass: a description may hold such marks itself.
     return re.sub(r"/\*([A-Z]+)\*/", lambda mark: filled[mark[1]], read_shipped_text("page.html"))

@@ -10,6 +10,7 @@ import zlib
 from base64 import b64decode
 from pathlib import Path
 
+import moderngl
 import numpy as np
 import pytest
 from exr_files import read
@@ -17,6 +18,7 @@ from halation import document
 from halation.compiler import Plan, Request, compile_graph
 from halation.export.package.curves import read_slot, simplify
 from halation.export.package.dialects import COVERING_VERTEX, DIALECTS
+from halation.export.package.exact_functions import use_exact_functions
 from halation.export.package.planning import TARGET
 from halation.export.package.sampling import Sample
 from halation.export.package.variants import MAX_SPANS, find_axis
@@ -98,7 +100,10 @@ def test_what_a_package_says(folder: Path) -> None:
     assert controls["color"]["label"] == "Color" and controls["color"]["knobs"][0]["rest"] == 1.0
     assert controls["size"]["kind"] == "slider" and package["axes"][0]["knob"] == "size"
     assert {name.name for name in folder.iterdir()} >= {*DIALECTS, "README.md", "read_package.js", "pixels"}
-    assert len((folder / "read_package.py").read_text().splitlines()) <= 200
+    for ending, most in (("py", 200), ("js", 300)):
+        files = [folder / f"{name}.{ending}" for name in ("read_package", "package_values")]
+        lines = [len(file.read_text().splitlines()) for file in files]
+        assert sum(lines) <= most and max(lines) <= 200
     for plan in package["plans"][0]:
         made = {number for each in plan["passes"] for number in each["targets"]}
         read_first = {number for each in plan["passes"] for number in each["textures"]} - made
@@ -152,6 +157,36 @@ def test_the_reference_compiler_takes_the_programs_of_all_presets(dialect: str, 
             texts[f"{number}.vert"] = write(vertex)
     assert len(texts) > 150
     assert not validate(texts, tmp_path, *words)
+
+
+@pytest.mark.parametrize(
+    ("name", "numbers"),
+    [
+        *((name, np.linspace(-40.0, 40.0, 4001)) for name in ("sin", "cos", "atan")),
+        ("tan", np.linspace(-1.5, 1.5, 1001)),
+        *((name, np.linspace(-1.0, 1.0, 1001)) for name in ("asin", "acos")),
+    ],
+)
+def test_angles_in_browsers_are_exact(name: str, numbers: np.ndarray) -> None:
+    """Against numpy: also of two arguments, and of vectors."""
+    inverse = name.replace("a", "arc") if name in ("atan", "asin", "acos") else name
+    x = numbers.astype(np.float32)
+    exact = [getattr(np, inverse)(x.astype(np.float64))] * 2
+    calls = [f"{name}(x)", f"{name}(vec3(x)).z"]
+    if name == "atan":
+        exact.append(np.arctan2(x.astype(np.float64), -3.0))
+        calls.append("atan(vec2(x), vec2(-3.0)).y")
+    main, functions = use_exact_functions(f"void main() {{ {''.join(f'y{n} = {c}; ' for n, c in enumerate(calls))}}}")
+    outputs = [f"y{number}" for number in range(len(calls))]
+    head = f"#version 330\nin float x;\n{''.join(f'out float {y};' for y in outputs)}\n"
+    context = moderngl.create_standalone_context(backend="egl")
+    context.simple_framebuffer((1, 1)).use()  # without any, nothing is transformed
+    program = context.program(f"{head}{functions}{main}", varyings=outputs)
+    sink = context.buffer(reserve=4 * len(outputs) * len(x))
+    context.vertex_array(program, [(context.buffer(x.tobytes()), "1f", "x")]).transform(sink, moderngl.POINTS)
+    shown = np.frombuffer(sink.read(), np.float32).reshape(-1, len(outputs)).T
+    context.release()
+    np.testing.assert_allclose(shown, exact, rtol=1e-6, atol=2e-6)
 
 
 def open_page(text: str) -> tuple[dict, list[bytes]]:

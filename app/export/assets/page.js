@@ -19,6 +19,17 @@ void main() {
     color = vec4(shown.rgb * shown.a, 1.0);
 }`;
 
+// A picture of the visitor as light, premultiplied: the inverse of the curve of sRGB (IEC 61966-2-1).
+const DECODE = `#version 300 es
+precision highp float;
+uniform highp sampler2D t0;
+out vec4 light;
+void main() {
+    vec4 code = texelFetch(t0, ivec2(gl_FragCoord.xy), 0);
+    vec3 bright = pow((code.rgb + 0.055) / 1.055, vec3(2.4));
+    light = vec4(mix(code.rgb / 12.92, bright, greaterThan(code.rgb, vec3(0.04045))) * code.a, code.a);
+}`;
+
 async function inflate(text, stride) {
     const bytes = Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
     const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
@@ -43,7 +54,8 @@ class Page {
             control.knobs.map(knob => [knob.name, knob.rest])));
         this.knobs = {...this.rest};
         this.frame = this.package.frames[0];
-        this.isFirst = true; this.isDirty = true; this.isPlaying = false; this.wipe = 0; this.own = new Map();
+        this.isFirst = this.isDirty = true; this.isPlaying = false; this.wipe = 0;
+        this.sheet = null; this.camera = null; // the picture of the visitor, and what makes it
         this.buildControls(); this.buildSources(); this.buildTime();
         this.canvas.addEventListener("webglcontextlost", event => { event.preventDefault(); this.reader = null; });
         this.canvas.addEventListener("webglcontextrestored", () => this.start());
@@ -57,20 +69,25 @@ class Page {
         this.gl = gl;
         this.reader = new PackageReader(gl, this.package, this.content.programs, number => this.blobs[number]);
         this.content.programs.cover = COVER;
-        for (const [number, pixels] of this.own) this.reader.replaceSource(number, pixels);
+        if (this.sheet) this.replaceMain();
         const {surfaces, output} = this.package.plans[0][0];
         [this.canvas.width, this.canvas.height] = this.size = surfaces[output].size;
         this.canvas.style.setProperty("--aspect", this.size[0] / this.size[1]);
         this.restart();
     }
 
-    restart() { this.frame = this.package.frames[0]; this.isFirst = true; this.isDirty = true; }
+    restart() {
+        this.frame = this.package.frames[0];
+        this.isFirst = this.isDirty = true;
+        $("fault").hidden = true;
+    }
 
     // --- drawing -------------------------------------------------------------------------------------------------
 
     tick(time) {
         const [first, last] = this.package.frames;
         try {
+            if (this.camera) this.readCamera();
             if (this.isPlaying && time - (this.shownAt || 0) >= 1000 / this.package.rate) {
                 this.shownAt = time;
                 if (this.frame >= last) this.restart(); else ++this.frame;
@@ -86,7 +103,10 @@ class Page {
     show() {
         this.isDirty = false;
         const reader = this.reader, first = this.package.frames[0];
-        if (reader.remembers) {
+        if (reader.remembers && this.camera) { // a camera has no earlier frames to begin from again
+            this.picture = reader.render(this.knobs, this.frame, this.isFirst);
+            this.rendered = first - 1;
+        } else if (reader.remembers) {
             if (this.isFirst || this.frame < this.rendered) this.rendered = first - 1;
             if (this.frame === this.rendered) this.rendered = first - 1;
             for (let at = this.rendered + 1; at <= this.frame; ++at)
@@ -106,27 +126,30 @@ class Page {
     // The picture as codes of a screen.
     view(picture, name) {
         const gl = this.gl, reader = this.reader, display = this.package.display;
-        const target = reader.remember(`${name} ${picture.size}`, () => {
+        const target = this.makeCodes(name, picture.size);
+        reader.bind(reader.use(display.program), [picture], display.tables);
+        reader.cover([target]);
+        return target;
+    }
+
+    // A texture of codes, in which pixels are interpolated.
+    makeCodes(name, size) {
+        const gl = this.gl;
+        return this.reader.remember(`${name} ${size}`, () => {
             const texture = gl.createTexture();
             gl.bindTexture(gl.TEXTURE_2D, texture);
-            gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, ...picture.size, 0, gl.RGBA, gl.UNSIGNED_BYTE, null);
-            reader.setSampling(gl.TEXTURE_2D, true);
-            return Object.assign(texture, {size: picture.size});
+            gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, ...size, 0, gl.RGBA, gl.UNSIGNED_BYTE, null);
+            this.reader.setSampling(gl.TEXTURE_2D, true);
+            return Object.assign(texture, {size});
         });
-        const linked = reader.program(display.program);
-        gl.useProgram(linked.program);
-        reader.bindTextures(linked, [picture], display.tables);
-        reader.draw(linked, [target]);
-        return target;
     }
 
     present() {
         const gl = this.gl, reader = this.reader;
         let before = this.shown;
         if (this.wipe > 0 && this.compared >= 0) before = this.view(reader.source(this.compared), "before");
-        const linked = reader.program("present", COVER, PRESENT);
-        gl.useProgram(linked.program);
-        reader.bindTextures(linked, [this.shown, before], []);
+        const linked = reader.use("present", {fragment: PRESENT});
+        reader.bind(linked, [this.shown, before]);
         reader.setUniform(linked, "room", this.size);
         reader.setUniform(linked, "wipe", [this.wipe]);
         gl.bindFramebuffer(gl.FRAMEBUFFER, null);
@@ -224,24 +247,21 @@ class Page {
     // --- pictures ------------------------------------------------------------------------------------------------
 
     buildSources() {
-        const inputs = this.package.sources.map((source, number) => ({...source, number})).filter(each => each.is_input);
-        const main = inputs.find(each => each.name === "beauty") || inputs[0];
+        const inputs = this.package.sources.flatMap((source, number) => source.is_input ? [{...source, number}] : []);
+        const main = this.main = inputs.find(each => each.name === "beauty") || inputs[0];
         this.compared = main ? main.number : -1;
         $("own").hidden = $("compare").hidden = !main;
         if (!main) return;
-        $("file").onchange = () => $("file").files[0] && this.load($("file").files[0], main);
+        $("file").onchange = () => $("file").files[0] && this.load($("file").files[0]).catch(fail);
         for (const name of ["dragover", "drop"])
             window.addEventListener(name, event => {
                 event.preventDefault();
                 const file = event.dataTransfer.files[0];
-                if (name === "drop" && file) this.load(file, main).catch(fail);
+                if (name === "drop" && file) this.load(file).catch(fail);
             });
-        $("back").onclick = () => {
-            this.own.delete(main.number);
-            this.reader.dropSource(main.number);
-            $("back").hidden = true;
-            this.restart();
-        };
+        $("camera").hidden = !navigator.mediaDevices;
+        $("camera").onclick = () => this.camera ? this.showOriginal() : this.openCamera().catch(fail);
+        $("back").onclick = () => this.showOriginal();
         const move = event => {
             const box = this.canvas.getBoundingClientRect();
             this.setWipe(Math.min(Math.max((event.clientX - box.left) / box.width, 0), 1));
@@ -263,26 +283,69 @@ class Page {
         if (this.reader && this.shown) this.present();
     }
 
-    // A picture of the visitor, cropped to the shape of the source, as light.
-    async load(file, source) {
+    async load(file) {
         const bitmap = await createImageBitmap(file).catch(() => { throw new Error(`${file.name} is no picture`); });
-        const [width, height] = source.size, scale = Math.max(width / bitmap.width, height / bitmap.height);
-        const sheet = document.createElement("canvas");
-        [sheet.width, sheet.height] = [width, height];
-        const pen = sheet.getContext("2d");
+        this.closeCamera();
+        this.draw(bitmap, bitmap.width, bitmap.height);
+        this.restart();
+    }
+
+    async openCamera() {
+        const [width, height] = this.main.size, wish = {width: {ideal: width}, height: {ideal: height}};
+        const stream = await navigator.mediaDevices.getUserMedia({video: wish}).catch(fault => {
+            throw new Error(`there is no picture of a camera: ${fault.message}`);
+        });
+        const video = Object.assign(document.createElement("video"), {srcObject: stream, muted: true});
+        await video.play();
+        this.camera = video;
+        this.restart();
+        $("camera").textContent = "Stop camera";
+    }
+
+    closeCamera() {
+        if (this.camera) this.camera.srcObject.getTracks().forEach(track => track.stop());
+        this.camera = null;
+        $("camera").textContent = "Camera";
+    }
+
+    readCamera() {
+        const video = this.camera;
+        if (!this.reader || video.currentTime === video.shownAt) return;
+        video.shownAt = video.currentTime;
+        this.draw(video, video.videoWidth, video.videoHeight);
+        this.isDirty = true;
+    }
+
+    // A picture of the visitor, cropped to the shape of the main input.
+    draw(picture, width, height) {
+        const [across, down] = this.main.size, scale = Math.max(across / width, down / height);
+        this.sheet ||= Object.assign(document.createElement("canvas"), {width: across, height: down});
+        const pen = this.sheet.getContext("2d");
         pen.imageSmoothingQuality = "high";
-        const [across, down] = [bitmap.width * scale, bitmap.height * scale];
-        pen.drawImage(bitmap, (width - across) / 2, (height - down) / 2, across, down);
-        const codes = pen.getImageData(0, 0, width, height).data, light = new Float32Array(codes.length);
-        const table = Float32Array.from({length: 256}, (_, code) => decode(code / 255));
-        for (let at = 0; at < codes.length; at += 4) {
-            const alpha = codes[at + 3] / 255;
-            for (let c = 0; c < 3; ++c) light[at + c] = table[codes[at + c]] * alpha;
-            light[at + 3] = alpha;
-        }
-        this.own.set(source.number, light);
-        this.reader.replaceSource(source.number, light);
+        pen.clearRect(0, 0, across, down);
+        const [w, h] = [width * scale, height * scale];
+        pen.drawImage(picture, (across - w) / 2, (down - h) / 2, w, h);
+        if (this.reader) this.replaceMain();
         $("back").hidden = false;
+    }
+
+    // Puts the picture of the visitor in the place of the main input.
+    replaceMain() {
+        const gl = this.gl, reader = this.reader, {size, format, number} = this.main;
+        const codes = this.makeCodes("own codes", size);
+        const light = reader.remember("own light", () => reader.makeTexture(size, format.replace("16f", "32f")));
+        gl.bindTexture(gl.TEXTURE_2D, codes);
+        gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, this.sheet);
+        reader.bind(reader.use("decode", {fragment: DECODE}), [codes]);
+        reader.cover([light]);
+        reader.replaced.set(number, light);
+    }
+
+    showOriginal() {
+        this.closeCamera();
+        this.sheet = null;
+        if (this.reader) this.reader.replaced.clear();
+        $("back").hidden = true;
         this.restart();
     }
 

@@ -6,6 +6,8 @@ import re
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
+from .exact_functions import use_exact_functions
+
 COVERING_VERTEX = """#version 410 core
 void main() {
     gl_Position = vec4(vec2((gl_VertexID << 1) & 2, gl_VertexID & 2) * 2.0 - 1.0, 0.0, 1.0);
@@ -63,7 +65,8 @@ def write_410(text: str) -> str:
 
 def write_es300(text: str) -> str:
     """For OpenGL ES 3.0 and WebGL 2."""
-    return _write_older(text, _ES_HEAD)
+    text, functions = use_exact_functions(text)
+    return _write_older(text, _ES_HEAD + functions)
 
 
 def remove_head(text: str) -> str:

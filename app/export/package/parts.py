@@ -41,20 +41,26 @@ class VariantSamples:
     pairs: Callable[[str, str], PairSamples]
 
     def find_snapped(self, places: list[int]) -> frozenset[str]:
-        """The knobs along which the numbers of a pass jump: its whole numbers bend, or weights change in number."""
+        """The knobs along which the whole numbers of a pass jump, nobody knows exactly where.
+
+        Where weights become more or fewer, samples are so close that a polygon holds the jump.
+        """
         snapped: set[str] = set()
         for name, group in self.by_knob.items():
-            xs = np.array(list(group))
-            for place in places:
-                slots = [sample.slots[place] for sample in group.values()]
-                if len({len(slot.numbers) for slot in slots}) > 1:
+            xs, slots = np.array(list(group)), [[sample.slots[place] for place in places] for sample in group.values()]
+            rows = np.array([[x for slot in row if slot.is_whole for x in slot.numbers] for row in slots])
+            lengths = np.array([[len(slot.numbers) for slot in row] for row in slots])
+            if len(xs) > 2:
+                lines = rows[0] + (xs - xs[0])[:, None] / (xs[-1] - xs[0]) * (rows[-1] - rows[0])
+                is_unknown = np.diff(rows, axis=0).any(axis=1) & ~np.diff(lengths, axis=0).any(axis=1)
+                if np.abs(lines - rows).max(initial=0.0) > _ROUNDED and is_unknown.any():
                     snapped.add(name)
-                elif slots and slots[0].is_whole and len(xs) > 2:
-                    rows = np.array([slot.numbers for slot in slots])
-                    lines = rows[0] + (xs - xs[0])[:, None] / (xs[-1] - xs[0]) * (rows[-1] - rows[0])
-                    if np.abs(lines - rows).max(initial=0.0) > _ROUNDED:
-                        snapped.add(name)
         return frozenset(snapped)
+
+    def has_one_length(self, place: int) -> bool:
+        """True if a slot has equally many numbers everywhere."""
+        samples = [self.rest, *(sample for group in self.by_knob.values() for sample in group.values())]
+        return len({len(sample.slots[place].numbers) for sample in samples}) == 1
 
 
 @dataclass
@@ -81,7 +87,8 @@ class SharedParts:
         """The number of a slot with all its curves."""
         record = write_slot(place, samples.rest, samples.by_knob, samples.checks, snapped)
         if len(record.get("curves", ())) > 1:
-            add_grids(record, place, samples.pairs, samples.checks, POOR_FIT / _GRID_MARGIN)
+            if samples.has_one_length(place):
+                add_grids(record, place, samples.pairs, samples.checks, POOR_FIT / _GRID_MARGIN)
             if measure_error(record, place, samples.checks) > POOR_FIT:
                 self.poor_knobs |= {curve["knob"] for curve in record["curves"]} - {FRAME}
         text = json.dumps(record)

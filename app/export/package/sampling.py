@@ -23,6 +23,10 @@ DENSE_STEPS = 8
 SMALLEST_STEP = 1 / 128
 """The smallest step between samples, as a part of the range: two steps of a slider of 256 pixels."""
 
+JUMP_STEP = 1 / 4096
+"""The smallest step where a slot gets more or fewer numbers, such as the weights of a wider blur. Between samples of
+different lengths there is nothing, so they are so close that no slider stops there: a tenth of a pixel of its width."""
+
 BEND = 2e-3
 """How far a number may lie beside the line between two samples, as a part of the largest number of its slot: half a
 step of 8 bits for what scales a color."""
@@ -58,7 +62,8 @@ def take_apart(plan: Plan, load: LoadFunction) -> Sample:
         names = tuple((name, _count_numbers(value)) for name, value in render_pass.uniforms)
         slots += [Slot(_as_array(value), _is_whole(value)) for _, value in render_pass.uniforms]
         if render_pass.weights:
-            slots.append(Slot(np.asarray(render_pass.weights, np.float64), is_whole=False))
+            weights = np.trim_zeros(np.asarray(render_pass.weights, np.float64), "b")  # the block is filled up with 0
+            slots.append(Slot(weights, is_whole=False))
         shader, tables = render_pass.shader, tuple(table.sampler for table in render_pass.tables)
         mesh = render_pass.mesh.digest if render_pass.mesh else ""
         structure.append((shader.source, shader.vertex, render_pass.textures, render_pass.targets, names, tables, mesh))
@@ -147,9 +152,10 @@ class KnobSampler:
     def _refine(self, low: float, high: float) -> None:
         """Add samples between two, until numbers between them lie on a line."""
         middle = self.knob.snap((low + high) / 2.0)
-        if middle in (low, high) or high - low <= (self.knob.high - self.knob.low) * SMALLEST_STEP:
-            return
         first, last = self.samples.get(low), self.samples.get(high)
+        smallest_step = JUMP_STEP if first and last and _jumps(first, last) else SMALLEST_STEP
+        if middle in (low, high) or high - low <= (self.knob.high - self.knob.low) * smallest_step:
+            return
         sample = self._add(middle)
         if first is None or last is None or sample is None:
             return
@@ -160,6 +166,13 @@ class KnobSampler:
             return
         self._refine(low, middle)
         self._refine(middle, high)
+
+
+def _jumps(first: Sample, last: Sample) -> bool:
+    """True if the passes are the same, and a slot of one of them has more numbers in one sample."""
+    return first.structure == last.structure and any(
+        len(a.numbers) != len(b.numbers) for a, b in zip(first.slots, last.slots, strict=True)
+    )
 
 
 def _is_straight(first: Sample, middle: Sample, last: Sample) -> bool:

@@ -1,0 +1,150 @@
+"""Pages that `halation export --to web` writes, opened in a browser: every night, Chromium shows all presets."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+from browser import CHROMIUM, Browser
+from halation.media.comparison.metrics import measure_flip
+from halation.presets import paths
+
+SIZE = "480x270"
+SHARES = (0.3, 0.85)
+"""Where on a slider the other settings are, from its low to its high end."""
+
+pytestmark = [
+    pytest.mark.nightly,
+    pytest.mark.timeout(1200),
+    pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed"),
+]
+
+
+@pytest.fixture
+def browser() -> Iterator[Browser]:
+    with Browser() as opened:
+        yield opened
+
+
+def read_picture(path: Path) -> np.ndarray:
+    """Codes from 0 to 255 over black: [height, width, 3]."""
+    straight = oiio.ImageSpec()
+    straight["oiio:UnassociatedAlpha"] = 1
+    pixels = 255.0 * oiio.ImageBuf(str(path), 0, 0, straight).get_pixels(oiio.FLOAT)
+    if pixels.shape[2] == 4:
+        pixels = pixels[..., :3] * pixels[..., 3:] / 255.0
+    return np.broadcast_to(pixels, (*pixels.shape[:2], 3))
+
+
+def show(browser: Browser, page: Path) -> None:
+    """Open a page and wait for its first picture."""
+    browser.open(page)
+    browser.wait_until("document.body.classList.contains('ready')")
+    assert browser.run("document.getElementById('fault').textContent") == ""
+
+
+def take(browser: Browser, folder: Path, knobs: dict[str, float]) -> np.ndarray:
+    """What the page shows at values of knobs; all others are as in the graph."""
+    code = f"Object.assign(halation, {{knobs: {{...halation.rest, ...{json.dumps(knobs)}}}}}).restart()"
+    url = browser.run(f"{code}; halation.show(); halation.canvas.toDataURL()")
+    (folder / "theirs.png").write_bytes(base64.b64decode(url.partition(",")[2]))
+    return read_picture(folder / "theirs.png")
+
+
+def list_settings(controls: list[dict[str, Any]]) -> Iterator[tuple[tuple[str, ...], dict[str, float]]]:
+    """Options of `halation render`, and the same as values of knobs: none, then two settings of each control."""
+    yield (), {}
+    for control in controls:
+        knobs = control["knobs"]
+        for share in SHARES:
+            numbers = [knob["low"] + share * (knob["high"] - knob["low"]) for knob in knobs]
+            if control["kind"] in ("whole", "switch", "choice"):
+                numbers = [round(number) for number in numbers]
+            words = {"switch": ["false", "true"], "choice": control.get("choices")}.get(control["kind"])
+            text = words[numbers[0]] if words else ",".join(map(str, numbers))
+            values = {knob["name"]: float(number) for knob, number in zip(knobs, numbers, strict=True)}
+            yield ("--set", f"{control['name']}={text}"), values
+
+
+@pytest.mark.parametrize("preset", [path.stem for path in paths()])
+def test_a_page_shows_what_we_render(cli, browser: Browser, tmp_path: Path, preset: str) -> None:
+    """At the settings of the preset and at two others of each control, without a word on the console."""
+    page, picture = tmp_path / "page.html", tmp_path / "ours.png"
+    assert cli("export", preset, "-o", page, "--size", SIZE).code == 0
+    show(browser, page)
+    worst: dict[str, tuple[float, float]] = {}
+    for options, knobs in list_settings(browser.run("halation.package.controls")):
+        words = ("render", preset, "-o", picture, "--size", SIZE, "--dither", "none", *options)
+        assert cli(*words).code == 0
+        ours, theirs = read_picture(picture), take(browser, tmp_path, knobs)
+        difference = float(np.percentile(np.abs(ours - theirs).max(axis=2), 99.9))
+        flip = measure_flip(theirs / 255.0, ours / 255.0, linear=False)
+        if difference > 2.01 or flip > 0.01:
+            worst[" ".join(options)] = round(difference, 1), round(flip, 4)
+    assert not worst and not browser.messages
+
+
+@pytest.fixture
+def page(cli, graphs, tmp_path: Path, browser: Browser) -> Path:
+    """A page that brightens its picture by a stop, open in the browser."""
+    parts = {"controls": {"stops": {"target": "light.stops"}}, "outputs": {"image": {"type": "Image", "view": "none"}}}
+    assert cli("export", graphs(**parts), "-o", tmp_path / "page.html").code == 0
+    show(browser, tmp_path / "page.html")
+    return tmp_path
+
+
+def test_a_lost_context_comes_back(browser: Browser, page: Path) -> None:
+    before = take(browser, page, {"stops": 1.5})
+    browser.run("window.loser = halation.gl.getExtension('WEBGL_lose_context'); loser.loseContext()")
+    browser.wait_until("halation.reader === null")
+    browser.run("loser.restoreContext()")
+    browser.wait_until("halation.reader && !halation.isDirty")
+    np.testing.assert_array_equal(take(browser, page, {"stops": 1.5}), before)
+
+
+def test_a_picture_of_the_visitor(browser: Browser, page: Path) -> None:
+    """It is decoded as sRGB, brightened and encoded again; another shape is cropped, a text is refused."""
+    codes = np.zeros((64, 48, 3), np.uint8)
+    codes[16:48] = (40, 90, 130)  # the middle, which a picture of 48x32 pixels keeps
+    oiio.ImageBuf(codes).write(str(page / "own.png"))
+    original = take(browser, page, {"stops": 1.0})
+    browser.choose_file("#file", page / "own.png")
+    browser.wait_until("halation.sheet && !halation.isDirty")
+    share = np.array([40.0, 90.0, 130.0]) / 255.0
+    light = 2.0 * ((share + 0.055) / 1.055) ** 2.4
+    brighter = 255.0 * (1.055 * light ** (1 / 2.4) - 0.055)
+    shown = take(browser, page, {"stops": 1.0})
+    np.testing.assert_allclose(shown, np.broadcast_to(brighter, shown.shape), atol=1.01)
+    (page / "no.png").write_text("no picture")
+    browser.choose_file("#file", page / "no.png")
+    browser.wait_until("document.getElementById('fault').textContent.includes('no.png is no picture')")
+    browser.run("document.getElementById('back').click()")
+    np.testing.assert_array_equal(take(browser, page, {"stops": 1.0}), original)
+
+
+def test_the_camera_of_the_visitor(browser: Browser, page: Path) -> None:
+    """Chromium's camera for tests is green with a yellow pie that turns."""
+    browser.run("document.getElementById('camera').click()")
+    browser.wait_until("halation.sheet && !halation.isDirty")
+    first = take(browser, page, {"stops": 0.0})
+    assert first[..., 1].mean() > 2.0 * first[..., 2].mean()
+    browser.wait_until(f"halation.camera.currentTime > {browser.run('halation.camera.currentTime')} + 0.5")
+    assert np.abs(take(browser, page, {"stops": 0.0}) - first).max() > 20.0
+    browser.run("document.getElementById('camera').click()")
+    assert browser.run("halation.camera === null && halation.sheet === null")
+
+
+def test_the_picture_before_is_shown_beside_it(browser: Browser, page: Path) -> None:
+    take(browser, page, {"stops": 3.0})
+    url = browser.run("halation.setWipe(0.5); halation.canvas.toDataURL()")
+    (page / "both.png").write_bytes(base64.b64decode(url.partition(",")[2]))
+    both, (after, before) = read_picture(page / "both.png"), (take(browser, page, {"stops": x}) for x in (3.0, 0.0))
+    middle = both.shape[1] // 2
+    np.testing.assert_allclose(both[:, :middle], before[:, :middle], atol=1.01)
+    np.testing.assert_array_equal(both[:, middle:], after[:, middle:])
