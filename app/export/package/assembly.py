@@ -17,7 +17,7 @@ from .curves import PairSamples, Record, find_needed_places
 from .display import write_display_program
 from .parts import SharedParts, VariantSamples
 from .planning import OUTPUT, Phase, PointPlanner
-from .sampling import Sample, is_number_table
+from .sampling import Sample, is_irregular, is_number_table
 from .variants import Span, VariantAxis, choose_axes, find_axis
 
 
@@ -67,7 +67,9 @@ class _Assembly:
         self.samples = {knob.name: planner.sample_knob(knob, base, phases[-1]) for knob in knobs}
         found_axes = (find_axis(knob.name, base[knob.name], self.samples[knob.name]) for knob in knobs)
         axes, held_axes = choose_axes([axis for axis in found_axes if axis])
-        held_names = {find_control_name(axis.knob) for axis in held_axes}
+        irregular_knobs = [knob for knob in knobs if not knob.is_whole and is_irregular(self.samples[knob.name])]
+        irregular_names = {find_control_name(knob.name) for knob in irregular_knobs}
+        held_names = {find_control_name(axis.knob) for axis in held_axes} | irregular_names
         axes = [axis for axis in axes if find_control_name(axis.knob) not in held_names]
         knobs = [knob for knob in knobs if find_control_name(knob.name) not in held_names]
         opening_knobs = [knob for knob in knobs if knob.name != FRAME] if len(phases) > 1 else knobs
@@ -76,7 +78,7 @@ class _Assembly:
         document = self._write_head((first, first if FRAME in held_names else last), axes)
         document |= self._write_display(opening)
         document |= {"slots": self.parts.slots, "plans": plans}
-        notes = (*planner.notes, *_describe_held(held_axes), *self._describe_poor())
+        notes = (*planner.notes, *_describe_held(held_axes, irregular_names), *self._describe_poor())
         return Package(document, notes, tuple(self.parts.programs), tuple(self.parts.blobs))
 
     def _write_plans(self, axes: Sequence[VariantAxis], knobs: list[Knob], base: Point, phase: Phase) -> list[Record]:
@@ -183,13 +185,15 @@ def _write_surfaces(plan: Plan, phase: Phase) -> list[Record]:
     return surfaces
 
 
-def _describe_held(axes: Sequence[VariantAxis]) -> list[str]:
+def _describe_held(axes: Sequence[VariantAxis], irregular_names: set[str]) -> list[str]:
     """A sentence on each knob that keeps its value."""
+    reasons = {find_control_name(axis.knob): "it changes passes, as others do already" for axis in axes}
+    reasons |= dict.fromkeys(sorted(irregular_names), "it changes the order of a table, again and again")
     return [
         "it shows one frame: other frames need other passes"
         if name == FRAME
-        else f"control '{name}' keeps its value: it changes passes, as others do already"
-        for name in dict.fromkeys(find_control_name(axis.knob) for axis in axes)
+        else f"control '{name}' keeps its value: {reason}"
+        for name, reason in reasons.items()
     ]
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -31,6 +31,13 @@ BEND = 2e-3
 """How far a number may lie beside the line between two samples, as a part of the largest number of its slot: half a
 step of 8 bits for what scales a color."""
 
+JUMP = 0.02
+"""How far the numbers of a table lie beside the line between neighbors, as a part of the largest, where they jump.
+It is ten times `BEND`; at the smallest step, a smooth number is ten times nearer."""
+
+MOST_JUMPS = 4
+"""Jumps of tables along a knob up to which it is a control: so many of 256 steps of a slider are wrong. A choice."""
+
 BESIDE = 1e-4
 """How far beside a special value a sample is taken, as a part of the range: less than any slider moves. A choice."""
 
@@ -43,6 +50,7 @@ class Slot(Struct, frozen=True, eq=False):
 
     numbers: Array
     is_whole: bool
+    is_table: bool = False
 
 
 class Sample(Struct, frozen=True, eq=False):
@@ -73,7 +81,7 @@ def take_apart(plan: Plan, load: LoadFunction) -> Sample:
     for upload in plan.uploads:
         if is_number_table(upload.picture):
             pixels = load(upload.picture).astype(np.float64)
-            slots.append(Slot(np.concatenate([pixels.shape, pixels.reshape(-1)]), is_whole=False))
+            slots.append(Slot(np.concatenate([pixels.shape, pixels.reshape(-1)]), is_whole=False, is_table=True))
         structure.append((upload.surface, is_number_table(upload.picture) or upload.picture))
     structure += [tuple(plan.outputs.items()), tuple(plan.memories)]
     return Sample(plan, tuple(structure), tuple(slots))
@@ -175,14 +183,35 @@ def _jumps(first: Sample, last: Sample) -> bool:
     )
 
 
+def is_irregular(samples: Mapping[float, Sample]) -> bool:
+    """True if a table jumps again and again along a knob of fractions, as the sorted outlines of a text that is scaled.
+
+    Between two such tables there is nothing, and the nearest one is that of another value.
+    """
+    jumps = 0
+    for (x, a), (y, b), (z, c) in zip(*(list(samples.items())[at:] for at in range(3)), strict=False):
+        if a.structure == b.structure == c.structure:
+            share = (y - x) / (z - x)
+            jumps += any(
+                _measure_bend(*slots, share) > JUMP
+                for slots in zip(a.slots, b.slots, c.slots, strict=True)
+                if slots[1].is_table and len({len(slot.numbers) for slot in slots}) == 1
+            )
+    return jumps > MOST_JUMPS
+
+
+def _measure_bend(first: Slot, middle: Slot, last: Slot, share: float = 0.5) -> float:
+    """How far numbers lie beside the line between those of two other samples, as a part of the largest of these."""
+    a, c = first.numbers, last.numbers
+    largest = max(np.abs(a).max(initial=0.0), np.abs(c).max(initial=0.0), 1e-9)  # above 0, where all are 0
+    return float(np.abs(a + share * (c - a) - middle.numbers).max(initial=0.0) / largest)
+
+
 def _is_straight(first: Sample, middle: Sample, last: Sample) -> bool:
     """True if all numbers of the middle sample lie between those of the others."""
     for a, b, c in zip(first.slots, middle.slots, last.slots, strict=True):
         if not len(a.numbers) == len(b.numbers) == len(c.numbers):
             return False
-        largest = max(
-            np.abs(a.numbers).max(initial=0.0), np.abs(c.numbers).max(initial=0.0), 1e-9
-        )  # above 0, where all are 0
-        if np.abs((a.numbers + c.numbers) / 2.0 - b.numbers).max(initial=0.0) > BEND * largest:
+        if _measure_bend(a, b, c) > BEND:
             return False
     return True
