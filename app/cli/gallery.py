@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
     from ..color.transforms import Array
     from ..graph import Graph
+    from ..inputs.provider import Binding
     from ..renderer import Renderer
 
 Step = Callable[[str], None]
@@ -153,13 +155,26 @@ def make_node_sheet(renderer: Renderer, step: Step = lambda name: None, ids: tup
 
 def render_node(node: type[Node], renderer: Renderer, sample: Path) -> Array:
     """The first image that a node makes of the sample, else its data made visible, in display colors."""
+    from .specimen import show_on_sample
+
+    return render_specimen(node, show_on_sample(node, sample), renderer, sample)
+
+
+def render_specimen(
+    node: type[Node],
+    graph: Graph,
+    renderer: Renderer,
+    sample: Path,
+    inputs: Mapping[str, Binding] = MappingProxyType({}),
+) -> Array:
+    """The same of a graph that `show_on_sample` made, with other values or inputs."""
     from halation.nodes import Kind
 
-    from .specimen import CANVAS, name_specimen, sample_graph, show_on_sample
+    from ..renderer import RenderRequest
+    from .specimen import CANVAS, name_specimen, sample_graph
 
-    graph = show_on_sample(node, sample)
     with name_specimen(node):
-        outputs = renderer.render(graph)
+        outputs = renderer.render(graph, RenderRequest(inputs))
     name = next((name for name, end in graph.outputs.items() if end.kind is Kind.IMAGE), next(iter(outputs)))
     if graph.outputs[name].kind is Kind.NUMBER:
         from ..media.comparison.contact_sheet import make_caption, show_light

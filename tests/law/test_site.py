@@ -21,7 +21,7 @@ FIRST_PAGE_LIMIT = 1_000_000
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The site, built strictly, with empty pictures of nodes."""
+    """The site, built strictly, with empty pictures of nodes, and without measuring them."""
     from mkdocs.commands.build import build
     from mkdocs.config import load_config
 
@@ -31,8 +31,10 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     patch.setenv("NO_MKDOCS_2_WARNING", "1")
     import node_pages
 
-    names = [f"pictures/nodes/{name}.jpg" for name in ("sample", *built_in_nodes())]
+    names = [f"pictures/nodes/{name}.jpg" for name in ("sample", "photograph", *built_in_nodes())]
+    names += [f"pictures/nodes/{name}.jpg" for name in ("bloom_photograph", "bloom_strip")]
     patch.setattr(node_pages, "render_pictures", lambda nodes: ((name, b"") for name in names))
+    patch.setattr(node_pages, "measure_times", lambda nodes: {"bloom": "It takes 80 ms with a device."})
     logging.getLogger("mkdocs").setLevel(logging.INFO)
     try:
         build(load_config(str(SITE / "mkdocs.yml"), site_dir=str(folder)))
@@ -56,7 +58,9 @@ def test_a_page_of_a_node_says_what_the_declaration_says(site: Path) -> None:
     assert all(f"<code>{name}</code>" in page for name, value in bloom.values.items() if not value.folded)
     assert bloom.aliases[0] in page and 'href="../presets.html#soft_bloom"' in page
     assert 'id="soft_bloom"' in (site / "presets.html").read_text(encoding="utf-8")
-    assert re.search(r"\d+ passes, and \d+ MiB of textures at 1920 x 1080", page)
+    assert re.search(r"\d+ passes, and \d+ MiB of textures at 1920 x 1080. It takes 80 ms with a device.", page)
+    pictures = re.findall(r'src="../pictures/nodes/(\w+).jpg"', page)
+    assert pictures == ["sample", "bloom", "photograph", "bloom_photograph", "bloom_strip"]
 
 
 def test_bars_in_tables_have_no_backslash(site: Path) -> None:

@@ -2,42 +2,68 @@
 
 from __future__ import annotations
 
+import math
 import tempfile
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 
+import numpy as np
 from halation import document
 from halation.cli.facts import plan_facts
-from halation.cli.gallery import render_display_frames, render_node
+from halation.cli.gallery import render_display_frames, render_specimen
 from halation.cli.manual import write_node_section
-from halation.cli.specimen import drawable_outputs, sample_graph
-from halation.graph import Graph
+from halation.cli.specimen import FULL_HD, NODE, drawable_outputs, sample_graph, show_on_sample
+from halation.graph import Graph, Port
 from halation.graph.graph import Group
-from halation.media.comparison.contact_sheet import write_sheet
-from halation.nodes import Node
+from halation.media.comparison.contact_sheet import make_sheet, write_sheet
+from halation.nodes import Node, Value
 from halation.presets import paths, sample
-from halation.renderer import Renderer, open_device
+from halation.renderer import Renderer, RenderRequest, open_device
+from halation.renderer.bench import measure_graph
 from halation.resources.sandbox import UNRESTRICTED
 
-BEFORE = "pictures/nodes/sample.jpg"
-"""The picture that nodes are shown on."""
+PHOTOGRAPH = Path(__file__).with_name("photograph.jpg")
+"""A cup of coffee by Rachel Michetti, who has waived all rights (CC0), made smaller; scikit-image has it."""
+
+BEFORE = {"": "pictures/nodes/sample.jpg", "_photograph": "pictures/nodes/photograph.jpg"}
+"""The pictures that nodes are shown on, by how names of pictures of nodes end: a render, and a photograph."""
+
+_STEPS, _STEP_WIDTH = 5, 192
+"""Pictures of a strip, and pixels of the width of each: a strip is as wide as the text of a page. Chosen by eye."""
 
 
-def write_node_page(node: type[Node], presets: Iterable[str], pictures: Collection[str]) -> str:
+def write_node_page(
+    node: type[Node], presets: Iterable[str], pictures: Collection[str], times: Mapping[str, str]
+) -> str:
     """The Markdown of the page of a node."""
     _, summary, *rest = write_node_section(node)
     blocks = [f"# {node.title}", f"`{node.id}` in the menu {node.category}", summary]
-    picture = _name_picture(node)
-    if picture in pictures:
-        before = f"![The sample before](../{BEFORE}){{ .half }} "
-        after = f"![{node.title} at its defaults](../{picture}){{ .half }}"
-        blocks.append(before + after if "image" in node.inputs else after)
+    for ending, before in BEFORE.items():
+        if (picture := _name_picture(node, ending)) in pictures:
+            after = f"![{node.title} at its defaults](../{picture}){{ .half }}"
+            blocks.append(f"![Before](../{before}){{ .half }} {after}" if "image" in node.inputs else after)
+    value = _find_main_value(node)
+    if value and (strip := _name_picture(node, "_strip")) in pictures:
+        numbers = ", ".join(f"{number:g}" for number in _list_steps(value))
+        blocks += [f"`{value.name}` at {numbers}:", f"![{value.name} at {numbers}](../{strip})"]
     blocks += rest
-    blocks += ["## What it costs", _describe_cost(node)]
+    blocks += ["## What it costs", f"{_describe_cost(node)} {times.get(node.id, '')}".strip()]
     if presets := list(presets):
         links = ", ".join(f"[{name}](../presets.md#{name})" for name in presets)
         blocks += ["## Presets that use it", links]
     return "\n\n".join(blocks) + "\n"
+
+
+def _find_main_value(node: type[Node]) -> Value | None:
+    """The first value with a slider."""
+    sliders = (value for value in node.values.values() if value.type in ("float", "int") and not value.folded)
+    return next((value for value in sliders if math.isfinite(value.low) and math.isfinite(value.high)), None)
+
+
+def _list_steps(value: Value) -> list[float]:
+    """Numbers from the low to the high end of a slider."""
+    numbers = [value.low + (value.high - value.low) * at / (_STEPS - 1) for at in range(_STEPS)]
+    return [round(number) for number in numbers] if value.type == "int" else numbers
 
 
 def _describe_cost(node: type[Node]) -> str:
@@ -68,21 +94,53 @@ def _list_types(graph: Graph) -> set[str]:
 
 
 def render_pictures(nodes: Iterable[type[Node]]) -> Iterator[tuple[str, bytes]]:
-    """Pictures of the sample and of each node at its defaults on it, as JPEG with their paths in the site."""
+    """Pictures of nodes as JPEG with their paths in the site: on the sample, on a photograph, and as a strip."""
     renderer = Renderer(open_device(sandbox=UNRESTRICTED), sandbox=UNRESTRICTED)
     try:
         with tempfile.TemporaryDirectory() as name:
             file = Path(name, "picture.jpg")
             (before,) = render_display_frames(sample_graph(sample()), renderer, (1,)).values()
             write_sheet(file, before, sandbox=UNRESTRICTED)
-            yield BEFORE, file.read_bytes()
+            yield BEFORE[""], file.read_bytes()
+            yield BEFORE["_photograph"], PHOTOGRAPH.read_bytes()
             for node in nodes:
-                if drawable_outputs(node):
-                    write_sheet(file, render_node(node, renderer, sample()), node.title, sandbox=UNRESTRICTED)
-                    yield _name_picture(node), file.read_bytes()
+                if not drawable_outputs(node):
+                    continue
+                for ending, light in _render_node(node, renderer).items():
+                    write_sheet(file, light, node.title, sandbox=UNRESTRICTED)
+                    yield _name_picture(node, ending), file.read_bytes()
     finally:
         renderer.close()
 
 
-def _name_picture(node: type[Node]) -> str:
-    return f"pictures/nodes/{node.id}.jpg"
+def _render_node(node: type[Node], renderer: Renderer) -> dict[str, np.ndarray]:
+    """The pictures of a node by how their names end. A photograph has no other layers."""
+    graph = show_on_sample(node, sample())
+    pictures = {"": render_specimen(node, graph, renderer, sample())}
+    if graph.inputs.keys() == {"beauty"}:
+        photograph = {"beauty": str(PHOTOGRAPH)}
+        pictures["_photograph"] = render_specimen(node, graph, renderer, sample(), photograph)
+    if value := _find_main_value(node):
+        steps = {f"{x:g}": graph.set(Port(NODE, value.name), x) for x in _list_steps(value)}
+        strip = {text: render_specimen(node, step, renderer, sample()) for text, step in steps.items()}
+        pictures["_strip"] = make_sheet(strip, _STEPS, _STEP_WIDTH)
+    return pictures
+
+
+def measure_times(nodes: Iterable[type[Node]]) -> dict[str, str]:
+    """How long each node takes at its defaults in full HD, by its type: a sentence with the device."""
+    renderer = Renderer(open_device(sandbox=UNRESTRICTED), budget=0, sandbox=UNRESTRICTED)
+    times: dict[str, str] = {}
+    try:
+        for node in filter(drawable_outputs, nodes):
+            benchmark = measure_graph(renderer, show_on_sample(node, sample()), RenderRequest(size=FULL_HD), (1,), 1, 1)
+            seconds = sum(timing.median for timing in benchmark.passes if NODE in timing.nodes)
+            if seconds:
+                times[node.id] = f"It takes {1e3 * seconds:.0f} ms with {renderer.device.description}."
+    finally:
+        renderer.close()
+    return times
+
+
+def _name_picture(node: type[Node], ending: str) -> str:
+    return f"pictures/nodes/{node.id}{ending}.jpg"
