@@ -61,9 +61,10 @@ def _find_main_value(node: type[Node]) -> Value | None:
 
 
 def _list_steps(value: Value) -> list[float]:
-    """Numbers from the low to the high end of a slider."""
-    numbers = [value.low + (value.high - value.low) * at / (_STEPS - 1) for at in range(_STEPS)]
-    return [round(number) for number in numbers] if value.type == "int" else numbers
+    """Numbers from the low to the high end of a slider: with equal ratios where it covers two powers of ten."""
+    has_ratios = value.low > 0.0 and value.high >= 100.0 * value.low
+    numbers = (np.geomspace if has_ratios else np.linspace)(value.low, value.high, _STEPS).tolist()
+    return [round(number) for number in numbers] if value.type == "int" else [float(f"{x:.3g}") for x in numbers]
 
 
 def _describe_cost(node: type[Node]) -> str:
