@@ -11,7 +11,7 @@ import pytest
 from source_trees import copy_tree
 
 UV = Path(sys.executable).with_name("uv")
-EXTRAS = ("video", "denoise", "cluster")
+EXTRAS = ("video", "denoise", "cluster", "fit", "wgsl")
 TOOLS = ("pytest", "pytest-timeout", "pytest-xdist", "hypothesis", "scipy", "opencv-python-headless", "jsonschema")
 TOOLS += ("markdown-it-py", "freetype-py")
 PARTS = (
@@ -57,10 +57,14 @@ def python(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return python
 
 
-def test_a_picture_is_rendered(python: Path, tmp_path: Path) -> None:
+def test_a_picture_is_rendered_fitted_and_exported(python: Path, tmp_path: Path) -> None:
     run(python, "-m", "halation.cli", "doctor", folder=tmp_path)
     run(python, "-m", "halation.cli", "render", "soft_bloom", "-o", "out.png", folder=tmp_path)
     assert (tmp_path / "out.png").stat().st_size > 10_000
+    values = ("--to", "out.png", "--values", "contrast", "--budget", "5s", "-o", "fitted.json")
+    run(python, "-m", "halation.cli", "fit", "cinematic_grade", *values, folder=tmp_path)
+    run(python, "-m", "halation.cli", "export", "soft_bloom", "--to", "wgsl", "-o", "passes", folder=tmp_path)
+    assert (tmp_path / "fitted.json").is_file() and list((tmp_path / "passes/wgsl").glob("*.wgsl"))
 
 
 def test_a_part_of_the_suite_passes(python: Path) -> None:
