@@ -115,7 +115,10 @@ def _begin_loading(job: RenderJob, graph: Graph, targets: Mapping[str, Port]) ->
         warm()
     from ..inputs.prefetch import Prefetcher
 
-    return None if job.resume or targets or job.memory else Prefetcher(graph, job.inputs, sandbox=job.sandbox)
+    reads_proxies = job.scale < 1.0  # of large files, which are then never read whole
+    if job.resume or targets or job.memory or reads_proxies:
+        return None
+    return Prefetcher(graph, job.inputs, sandbox=job.sandbox)
 
 
 def _split_among_helpers(

@@ -178,6 +178,11 @@ class MediaProvider:
             repaired = (
                 self.repaired_pixels.get(path, 0) + pixels.repaired
             )  # rows of one picture are requested one after the other
+        elif picture.reduction > 1:
+            from ..media.pictures.reduced_reader import read_reduced
+
+            pixels = read_reduced(path, request, picture.reduction, sandbox=self.sandbox)
+            repaired = pixels.repaired
         else:
             from ..media.pixels import read_layers
 

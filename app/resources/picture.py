@@ -13,6 +13,10 @@ MAX_OVERSCAN = 2.0
 """The largest overscan in heights of the frame. A picture of 16:9 then has eleven times the pixels of its frame, if
 somebody reads them all. Chosen by judgement: plates and renders are made with a tenth, rarely with a half."""
 
+LARGE_PICTURE = 2**24
+"""Pixels from which on a proxy of a file is made while it is read: in half floats they fill a quarter of the editor's
+first budget for pictures, 512 MiB. Chosen by judgement: with half as many, proxies of UHD pictures change a little."""
+
 PixelRectangle = tuple[int, int, int, int]
 """A rectangle of pixels: x, y, width and height. The top left pixel of a frame is (0, 0)."""
 
@@ -24,7 +28,8 @@ class Picture(Record, frozen=True):
     compiler never looks at: a plan has all that it needs to run. `space` is what color in a file is in, "" to find out;
     `color` says how colors are managed. With a folder `within` the file must lie in it, links followed. Rows of it can
     be read alone if it is `by_rows`; `rows` are those that are read, the first and the one after the last, None
-    for all. With `overscan`, pixels around its frame are read as well, where a file has them.
+    for all. With `overscan`, pixels around its frame are read as well, where a file has them. With a `reduction` of n,
+    squares of n x n pixels are read as one: their mean, of data the pixel in the middle.
     """
 
     path: str
@@ -40,5 +45,6 @@ class Picture(Record, frozen=True):
     by_rows: bool = False
     rows: tuple[int, int] | None = None
     overscan: bool = False
+    reduction: int = 1
 
     compare_exclude: ClassVar[frozenset[str]] = frozenset({"pixels"})

@@ -24,7 +24,7 @@ from ...errors import GraphError, HalationError, NoFileError, describe_owner
 from ...graph import Graph, color_settings, make_socket
 from ...resources.color_program import ColorProgram
 from ...resources.mesh import Mesh
-from ...resources.picture import Picture
+from ...resources.picture import LARGE_PICTURE, Picture
 from ...resources.provider import FrameFile, PictureProbe, ResourceProvider
 from ...resources.today import read_date
 from ..areas import Neighborhood, Region, scale_size
@@ -89,7 +89,6 @@ class PictureBuilder:
             frame_file = self._find_file(picture, owner, frame, missing)
             picture, is_black = replace(picture, path=frame_file.path, frame=frame_file.number), frame_file.black
         probed = self._probe(picture, owner)
-        shape = PictureShape(probed.size, picture.width, picture.kind is not Kind.IMAGE)
         whole = self._request.size if self._request.size and probed.size != (1, 1) else probed.size
         size = scale_size(whole, self._request.scale)
         if is_black:
@@ -98,7 +97,11 @@ class PictureBuilder:
         # A bound array is identified by its fingerprint. Only the request refers to the array, so that plans that are
         # kept for later do not keep it in memory.
         window = Region(*probed.overscan) if self._overscan and probed.overscan else None
-        picture = replace(picture, pixels=None, by_rows=probed.by_rows, overscan=window is not None)
+        is_whole = window is not None or self._request.scale >= 1.0
+        reduction = 1 if is_whole else _choose_reduction(probed, size)
+        by_rows = probed.by_rows and reduction == 1
+        picture = replace(picture, pixels=None, by_rows=by_rows, overscan=window is not None, reduction=reduction)
+        shape = PictureShape(scale_size(probed.size, 1 / reduction), picture.width, picture.kind is not Kind.IMAGE)
         ref = self._builder.add(
             Read((shape,), owner, picture, probed.fingerprint, probed.half, window, probed.pixel_aspect)
         )
@@ -198,3 +201,13 @@ class PictureBuilder:
         shape = PictureShape(size, socket.channels, socket.kind is not Kind.IMAGE)
         parameters = (Parameter(glsl, operand),)
         return self._builder.add(Call((shape,), owner, "primitive/convert", f"as_{glsl}", parameters))
+
+
+def _choose_reduction(probed: PictureProbe, size: Size) -> int:
+    """How many pixels of a large file are read as one, across and down, where `size` is wanted: a power of two."""
+    width, height = probed.size
+    factor = 1
+    if probed.by_rows and width * height >= LARGE_PICTURE:
+        while all(side >= 2 * factor * goal - factor for side, goal in zip(probed.size, size, strict=True)):
+            factor *= 2
+    return factor

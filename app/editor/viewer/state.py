@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
+from ...authoring.preview.large_files import LargeFiles
 from .brush import PaintBrush
 from .pacing import Pace
 from .pen import SplinePen
@@ -86,6 +87,7 @@ class ViewerState:
     proxy: float = 1.0
     paused: bool = False
     pace: Pace = field(default_factory=Pace)
+    large_files: LargeFiles = field(default_factory=LargeFiles)
     meaning: Meaning = "auto"
     low: float = 0.0
     high: float = 0.0

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from ...authoring.preview import VisibleRegion
 from ...graph import INPUTS, Port
+from ...renderer.viewing.look import fit_zoom
 from .geometry import Sight
 from .ground import depths
 from .looking import measures
@@ -22,12 +23,22 @@ def layer(name: str) -> str:
 
 
 def effective_scale(context: ViewerContext) -> float:
-    """The chosen proxy, or a coarser one while a value is being dragged and pictures come too slowly."""
-    viewer, region = context.viewer, find_visible_region(context)
-    share = region.share(viewer.proxy) if region else 1.0
-    return viewer.pace.at(
-        viewer.proxy, context.interface.dragging and context.store.current.proxy_while_dragging, share
-    )
+    """The chosen proxy, or a coarser one: of large files, and while a value is dragged and pictures come too slowly."""
+    viewer, session, region = context.viewer, context.session, find_visible_region(context)
+    viewer.large_files.follow(session.root, session.bindings, context.preview.renderer.pictures)
+    _, budget = context.preview.memory
+    finest = min(viewer.proxy, viewer.large_files.choose_scale(_find_zoom(context), budget))
+    share = region.share(finest) if region else 1.0
+    return viewer.pace.at(finest, context.interface.dragging and context.store.current.proxy_while_dragging, share)
+
+
+def _find_zoom(context: ViewerContext) -> float:
+    """Pixels of the panel for one of the picture at scale 1, as far as both are known; else 0."""
+    viewer, image = context.viewer, context.preview.find_visible_image(A)
+    picture = image.full_size if image else viewer.large_files.size
+    if viewer.zoom > 0.0 or not all((*viewer.panel, *picture)):
+        return viewer.zoom
+    return fit_zoom(viewer.panel, picture, viewer.stretch)
 
 
 def list_wanted_ports(context: ViewerContext) -> tuple[dict[str, Port], float]:
