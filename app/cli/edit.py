@@ -64,7 +64,7 @@ def _open_editor(graph: Path | None, inputs: list[str] | None, lesson: str) -> i
         if inputs:
             raise UsageError(f"{graph}: -i is for the inputs of a graph, and this is a picture: leave -i out")
         _check_is_there(graph, sandbox)
-    elif graph is not None:
+    elif graph is not None and inputs:
         from .. import document
 
         bindings = resolve_inputs(document.load(graph, sandbox=sandbox), parsing.parse_inputs(inputs))

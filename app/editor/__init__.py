@@ -54,6 +54,6 @@ def edit(path: Path | None, bindings: Mapping[str, str] | None, sandbox: Sandbox
     `bindings` are files for graph inputs by name. `lesson` is the id of a lesson of the course to begin. Raises
     DocumentError for a file that cannot be read, DeviceError where no window can be opened.
     """
-    from .window import open_window
+    from .window import start_editor
 
-    open_window(path, dict(bindings or {}), sandbox, lesson)
+    start_editor(path, dict(bindings or {}), sandbox, lesson)

@@ -30,14 +30,15 @@ def shader_folder() -> Path:
 
 
 class NodeFiles:
-    """The files of the catalogue, as they were when its classes were made.
+    """The files of the catalogue, as they were when this was made, or read again last.
+
+    A class that is loaded only later may come from a newer file, which `reload` then reads once more.
 
     The vocabulary is not read again: what is a node, and what is not, would change its meaning under living graphs.
     """
 
     def __init__(self) -> None:
         self.folder = Path(nodes.__path__[0])
-        dict(built_in_nodes())
         self._texts = self._read()
 
     def reload(self) -> str:

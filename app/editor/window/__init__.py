@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from .opening import open_window
+from .starting import start_editor
 
-__all__ = ["open_window"]
+__all__ = ["start_editor"]

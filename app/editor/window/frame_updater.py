@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from halation.nodes import plugins
+from halation.nodes import catalogue, plugins
 from imgui_bundle import imgui
 
 from ...authoring.preview.request import PreviewRequest
@@ -52,6 +53,7 @@ class FrameUpdater:
     def __init__(self, editor: Editor, contexts: Contexts) -> None:
         self._editor, self._contexts = editor, contexts
         self._nodes = NodeFiles()
+        self._unloaded_nodes = list(catalogue())
         self._watched: tuple[object, ...] = ()
         self._flushed = float("-inf")
         self._reported: set[str] = set()
@@ -118,6 +120,18 @@ class FrameUpdater:
         is_urgent = editor.timeline.playing or editor.viewer.brush.stroke != ""
         self.is_working = preview.work(PLAY_BUDGET if is_urgent else FRAME_BUDGET)
         self.is_working = self._run_passes(flat, scale) or self.is_working
+        if not self.is_working and not editor.interface.dragging and not editor.canvas.panning:
+            self.is_working = self._load_nodes()
+
+    def _load_nodes(self) -> bool:
+        """Load classes of nodes for some milliseconds, so that the search opens at once; True while there are more.
+
+        Those of the graph are there already; to load all of them first would keep the window closed for long.
+        """
+        end = time.perf_counter() + FRAME_BUDGET / 2
+        while self._unloaded_nodes and time.perf_counter() < end:
+            catalogue()[self._unloaded_nodes.pop()]
+        return bool(self._unloaded_nodes)
 
     def _run_passes(self, ports: Mapping[str, Port], scale: float) -> bool:
         """Run the next pass for the panel of passes, if somebody looks at it; True while there are more."""

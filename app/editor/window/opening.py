@@ -4,26 +4,37 @@ from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
 from imgui_bundle import hello_imgui, immapp
 
+from ... import document
 from ...authoring.preferences import PreferenceStore, state_folder
+from ...media.pictures.file_endings import is_picture
 from ...resources.sandbox import Sandbox
-from .opengl import best_version
 from .window import Window
 
 
-def open_window(path: Path | None, bindings: Mapping[str, str], sandbox: Sandbox, lesson: str = "") -> None:
-    """Run the editor, on a lesson if its id is given.
+def open_window(
+    path: Path | None,
+    bindings: Mapping[str, str],
+    sandbox: Sandbox,
+    lesson: str,
+    *,
+    version: tuple[int, int],
+    on_shown: Callable[[], None],
+) -> None:
+    """Run the editor, on a lesson if its id is given. `on_shown` is called when its panels are seen for the first time.
 
-    Raises DeviceError where no window can be opened, KeyboardInterrupt if it was interrupted.
+    Raises DocumentError for a file that cannot be read, KeyboardInterrupt if it was interrupted.
     """
+    if path is not None and not is_picture(path):
+        document.load(path, sandbox=sandbox)  # what is wrong with it is told before a window flashes up
     state = state_folder()
     action = f"lesson.{lesson}" if lesson else ""
-    window = Window(path, bindings, sandbox, first_action=action, version=best_version(), state=state)
+    window = Window(path, bindings, sandbox, first_action=action, version=version, state=state, on_shown=on_shown)
     keep_layout(window.params, state)
     is_visible = os.environ.get("HALATION_WINDOW") != "none"
     window.params.imgui_window_params.enable_viewports = is_visible and PreferenceStore(state).current.separate_windows
@@ -36,7 +47,8 @@ def open_window(path: Path | None, bindings: Mapping[str, str], sandbox: Sandbox
 def run(window: Window) -> None:
     """Run a window until it is closed. Raises the error if it cannot start, and errors outside of panels."""
     try:
-        immapp.run(window.params, immapp.AddOnsParams())
+        # Not `immapp.run`, which reads the sources of all loaded modules to see whether it is in a tutorial.
+        immapp.immapp_cpp.run(window.params, immapp.AddOnsParams())
     except RuntimeError:
         # The library complains that nothing was drawn where a window ends before its first frame.
         if window.frames > 0 or not window.params.app_shall_exit:

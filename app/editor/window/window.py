@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 
@@ -42,6 +42,8 @@ from .status import draw_status
 SIZE = (1600, 1000)
 _ASSETS = str(Path(__file__).parents[1] / "assets")
 """Has the icon of the window, where the library looks for it."""
+_HIDDEN = 2
+"""Frames in which panels stay empty: the library finds out which of them are behind the tabs of others."""
 _APPEARING = 3
 """Frames until panels that are shown again are in their docks: each comes to the front there as it appears."""
 
@@ -64,7 +66,9 @@ class Window:
         state: Path | None = None,
         size: tuple[int, int] = SIZE,
         form: Form | None = None,
+        on_shown: Callable[[], None] = lambda: None,
     ) -> None:
+        self._on_shown = on_shown
         self._path, self._bindings, self._sandbox, self._state = path, dict(bindings), sandbox, state
         self._form: Form | None = form
         self.editor: Editor
@@ -261,7 +265,7 @@ class Window:
             host.is_visible = bool(stays)
         if docked.bare:
             imgui.pop_style_var()
-        if is_seen:
+        if is_seen and self.frames > _HIDDEN:
             self._draw_inside(docked.title)
         imgui.end()
 
@@ -301,6 +305,8 @@ class Window:
     def _after_swap(self) -> None:
         if self.fault is None:
             self._painter.check_mark()
+        if self.frames == _HIDDEN + 1:
+            self._on_shown()
 
     # --- parts -------------------------------------------------------------------------------------------------------
 

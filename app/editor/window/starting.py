@@ -1,0 +1,35 @@
+"""Starts the editor: shows a small window at once, and loads everything else behind it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from importlib import import_module
+from pathlib import Path
+from threading import Thread
+
+from ...resources.sandbox import Sandbox
+from .opengl import best_version
+from .splash import Splash
+
+
+def start_editor(path: Path | None, bindings: Mapping[str, str], sandbox: Sandbox, lesson: str = "") -> None:
+    """Run the editor, on a lesson if its id is given.
+
+    Raises DeviceError where no window can be opened, DocumentError for a file that cannot be read, KeyboardInterrupt if
+    it was interrupted.
+    """
+    loading = Thread(target=import_module, args=(".opening", __package__), name="loading", daemon=True)
+    loading.start()  # most of a start are imports: they go on while the system opens a window
+    version = best_version()
+    splash = Splash(version) if os.environ.get("HALATION_WINDOW") != "none" else None
+    if splash is not None:
+        splash.follow(loading)
+    loading.join()
+    from .opening import open_window
+
+    try:
+        open_window(path, bindings, sandbox, lesson, version=version, on_shown=splash.close if splash else lambda: None)
+    finally:
+        if splash is not None:
+            splash.close()
