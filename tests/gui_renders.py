@@ -5,6 +5,7 @@ from pathlib import Path
 
 from gui_driver import Ui
 from halation.authoring.render_queue.queued_render import QueuedJob, QueuedRender, RenderState
+from halation.editor.shared.declared_words import name_choice
 from halation.graph import Graph
 from halation.renderer.jobs.render_job import RenderJob
 from halation.resources.sandbox import UNRESTRICTED
@@ -38,4 +39,21 @@ def renders(ui: Ui) -> Iterator[str]:
     ui.wait(3)
     yield "renders"
     ui.editor.exports.all = ()
+    ui.click("Frames")
+    ui.click(f"Frames {name_choice('many files')}")
+    yield "renders_many_files"
+    ui.click("render cluster")
+    ui.type("tcp://farm:8786")
+    yield "renders_cluster"
     ui.show_panel("Graph")
+
+
+def exporting(ui: Ui) -> Iterator[str]:
+    """The dialog that writes graphs for other programs."""
+    ui.editor.actions.run("file.export")
+    ui.wait(4)
+    yield "export"
+    ui.click("export kind")
+    yield "export_kinds"
+    ui.keys("Escape")
+    ui.click("export close")

@@ -9,7 +9,7 @@ from pathlib import Path
 from gui_driver import Ui
 from gui_keys import animation
 from gui_lessons import lessons
-from gui_renders import renders
+from gui_renders import exporting, renders
 from halation import presets
 from halation.authoring.commands import AddComment, AddFrame, ArrangeElements, Disconnect, MakeGroup, ReplaceGraph
 from halation.authoring.edits.element_id import ElementId
@@ -364,6 +364,7 @@ SCREENS: tuple[Callable[[Ui], Screens], ...] = (
     panels,
     animation,
     renders,
+    exporting,
     files,
     dialogs,
     lessons,

@@ -62,3 +62,24 @@ def test_the_smallest_and_the_largest_interface_cut_nothing_off(gui, scale: floa
         ui.shot(f"scale_preferences_{scale:g}.png")
 
     gui(body, presets.paths()[0], size=size, likes={"ui_scale": scale})
+
+
+@pytest.mark.parametrize(("panel", "count"), [("Scopes", 6), ("Renders", 8), ("Log", 3), ("Inspector", 8)])
+def test_the_keyboard_walks_through_a_panel(gui, panel: str, count: int) -> None:
+    """Each press of Tab leads to another field with a ring around it, also after the pointer was over the graph."""
+
+    def body(ui: Ui) -> None:
+        ui.settled()
+        ui.show_panel(panel)
+        ui.click(panel, fraction=(0.5, 0.98))
+        ui.editor.scope = "graph"
+        reached = set[int]()
+        for _ in range(count):
+            ui.keys("Tab")
+            navigation = imgui.get_current_context()
+            assert navigation.nav_cursor_visible and navigation.nav_window.root_window.name.startswith(panel)
+            reached.add(navigation.nav_id)
+        assert len(reached) == count and 0 not in reached
+        assert not imgui.is_popup_open("", int(imgui.PopupFlags_.any_popup))
+
+    gui(body, presets.paths()[0], size=(1366, 768))

@@ -13,6 +13,7 @@ from drawn_texts import DrawnText, TextRecorder, find_plain_words, is_cut
 from gui_driver import Ui
 from gui_screens import SCREENS, write_many_things
 from halation.editor.window import appearance
+from halation.export.kinds import KINDS
 from halation.language.translation import translate, use_language, use_texts
 from pseudo_language import PseudoTexts
 
@@ -53,7 +54,7 @@ PROGRAMS = ("Halation", "Python", "OpenImageIO", "numpy", "moderngl", "imgui", "
 ELSEWHERE = ("Cancel", "Save", "Tint", "Lamps", "curve", "ramp", "samples", "state")
 """Answers that a screen gives to its own question, nodes of its plug-in, and its folders."""
 
-NAMES = frozenset((*UNITS, *PROGRAMS, *ELSEWHERE))
+NAMES = frozenset((*UNITS, *PROGRAMS, *ELSEWHERE, *KINDS))
 
 
 @pytest.fixture

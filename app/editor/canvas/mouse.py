@@ -105,6 +105,7 @@ class CanvasMouse:
             if not isinstance(self.gesture, PanGesture):
                 pan_at_border(frame, io)
             self._continue(frame, io)
+        frame.context.canvas.panning = isinstance(self.gesture, PanGesture)
         self._update_preview(frame)
 
     def _find_hit(self, frame: CanvasFrame) -> Hit:

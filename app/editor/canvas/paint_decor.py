@@ -10,7 +10,7 @@ from imgui_bundle import imgui
 
 from ...language.translation import translate
 from ..theme.style import mix, u32
-from .brush import TEXT, CanvasColors, DrawContext
+from .brush import READABLE, TEXT, CanvasColors, DrawContext
 from .geometry import Curve, Point, Rect
 from .scene import FRAME_TITLE, ElementBox, Wire
 
@@ -72,9 +72,21 @@ def paint_comment(brush: DrawContext, box: ElementBox, text: str, selected: bool
     low, high = brush.project_corners(rect)
     s = brush.to.scale
     words, color = (text, ink.text) if text else (translate("double-click to write"), ink.faint)
+    size = _find_comment_size(brush, words, (box.w - 20.0) * s, (box.h - 16.0) * s)
     brush.draw.push_clip_rect(low, high, True)
-    brush.draw.add_text(brush.fonts.text, TEXT * s, (low[0] + 12 * s, low[1] + 8 * s), color, words, (box.w - 20.0) * s)
+    brush.draw.add_text(brush.fonts.text, size, (low[0] + 12 * s, low[1] + 8 * s), color, words, (box.w - 20.0) * s)
     brush.draw.pop_clip_rect()
+
+
+def _find_comment_size(brush: DrawContext, words: str, width: float, height: float) -> float:
+    """The size of the text of a comment in pixels: readable however far the canvas is zoomed out, if it has room."""
+    least, size = TEXT * brush.to.scale, READABLE * brush.to.scale / brush.zoom
+    imgui.push_font(brush.fonts.text, TEXT)
+    measured = imgui.get_font_size()
+    while size > least and imgui.calc_text_size(words, wrap_width=width * measured / size).y * size > height * measured:
+        size -= 1.0
+    imgui.pop_font()
+    return max(size, least)
 
 
 def paint_dot(brush: DrawContext, box: ElementBox, color: int, selected: bool) -> None:

@@ -30,6 +30,8 @@ class CanvasView:
     """Width and height of elements as drawn last, in canvas units."""
     hovered: bool = False
     """True while the mouse is over the canvas."""
+    panning: bool = False
+    """True while the view follows the mouse."""
     searching: bool = False
     """True asks the canvas to open the search at the pointer."""
     replacing: str = ""

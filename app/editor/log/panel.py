@@ -49,7 +49,7 @@ class LogPanel:
             sentence = translate("Messages stay here until they are cleared.")
             draw_empty_panel(self._context, icons.ICON_FA_FILE_LINES, title, sentence)
             return
-        if imgui.begin_child("entries"):
+        if imgui.begin_child("entries", child_flags=imgui.ChildFlags_.nav_flattened.value):
             at_end = imgui.get_scroll_y() >= imgui.get_scroll_max_y() - 1
             for index, entry in enumerate(entries):
                 imgui.push_id(index)

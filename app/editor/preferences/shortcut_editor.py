@@ -59,7 +59,7 @@ class ShortcutEditor:
             self._context.log.attempt(lambda: self._context.store.change(shortcuts={}))
         self._listen()
         self._ask()
-        if imgui.begin_child("list"):
+        if imgui.begin_child("list", child_flags=imgui.ChildFlags_.nav_flattened.value):
             for title, actions in group_actions(self._context.actions, every=True):
                 labels = tuple(translate(action.label) for action in actions)
                 matches = sorted(ranked.index for ranked in match(self._query, labels))

@@ -48,7 +48,7 @@ class ProblemsPanel:
         align_right(_copy_label())
         if quiet_button(self._context, _copy_label(), "copy problems", translate("Copy all as text")):
             self._context.clipboard.put("\n".join(problem_text(finding) for finding in problems))
-        if imgui.begin_child("problems"):
+        if imgui.begin_child("problems", child_flags=imgui.ChildFlags_.nav_flattened.value):
             for index, finding in enumerate(problems):
                 imgui.push_id(index)
                 self._draw_row(index, finding)

@@ -18,6 +18,8 @@ from .queue_view import RenderQueueView
 if TYPE_CHECKING:
     from .context import RendersContext
 
+_FLAT = imgui.ChildFlags_.nav_flattened.value
+"""The keyboard walks through both parts as one."""
 _FORM, _WIDE = 420.0, 760.0
 """The width of the form, and the panel width from which on the queue is beside it."""
 
@@ -48,10 +50,10 @@ class RendersPanel:
             imgui.separator()
             self._queue.draw()
             return
-        imgui.begin_child("form", ImVec2(_FORM * scale, room.y))
+        imgui.begin_child("form", ImVec2(_FORM * scale, room.y), _FLAT)
         draw_form(self._context, form)
         imgui.end_child()
         imgui.same_line(0, 20 * scale)
-        imgui.begin_child("queue", ImVec2(0, room.y))
+        imgui.begin_child("queue", ImVec2(0, room.y), _FLAT)
         self._queue.draw()
         imgui.end_child()

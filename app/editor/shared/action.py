@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Generic, Literal, Never, TypeVar
@@ -77,6 +77,8 @@ class Actions:
         self.overrides, self.keymap = overrides, keymap
         self._log = log
         self._by_id: dict[str, tuple[ListedAction, BoundAction]] = {}
+        self._shortcuts: tuple[tuple[object, ...], Sequence[tuple[ListedAction, str]]] = ((), ())
+        """Those of the scope that was asked for last, and what they depend on."""
 
     def __getitem__(self, id: str) -> ListedAction:
         return self._by_id[id][0]
@@ -95,6 +97,14 @@ class Actions:
     def default_shortcut(self, id: str) -> str:
         """The shortcut of an action in the keymap, before the user changed it."""
         return self.keymap().get(id, self[id].shortcut)
+
+    def list_shortcuts(self, scope: str) -> Sequence[tuple[ListedAction, str]]:
+        """The actions of a scope that have a shortcut, and those of all scopes, with their shortcuts."""
+        inputs = scope, len(self.all), self.overrides(), self.keymap()
+        if self._shortcuts[0] != inputs:
+            with_texts = ((action, self.shortcut(action.id)) for action in self.all if action.scope in ("", scope))
+            self._shortcuts = inputs, tuple((action, text) for action, text in with_texts if text)
+        return self._shortcuts[1]
 
     def in_menu(self, name: str) -> Iterator[ListedAction]:
         """The actions of a context menu."""

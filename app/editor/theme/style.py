@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from .palette import CONTRAST, RGB, Palette
@@ -10,6 +12,7 @@ EM = 16.0
 """Font size in pixels at UI scale 1; canvas units are pixels at that scale."""
 
 
+@lru_cache(maxsize=4096)
 def u32(color: RGB, alpha: float = 1.0) -> int:
     """A color as draw lists take it."""
     red, green, blue = (int(min(max(part, 0.0), 1.0) * 255 + 0.5) for part in color)

@@ -19,6 +19,9 @@ FIXED = (
     | int(imgui.WindowFlags_.no_resize)
 )
 
+_HAD_POPUP = 0x504F5055
+"""Under which a dialog notes that something was open in it: "POPU" in ASCII."""
+
 
 def backdrop(surface: WidgetSurface, name: str, opacity: float = 0.45) -> bool:
     """Cover everything below a dialog, so that nothing else can be clicked; True if the cover was clicked."""
@@ -71,6 +74,7 @@ def dialog(
     yield
     corner, extent = imgui.get_window_pos(), imgui.get_window_size()
     surface.places[f"dialog {title}"] = (corner.x, corner.y, corner.x + extent.x, corner.y + extent.y)
+    imgui.get_state_storage().set_bool(_HAD_POPUP, imgui.is_popup_open("", int(imgui.PopupFlags_.any_popup)))
     imgui.end()
 
 
@@ -81,9 +85,13 @@ def enter_pressed() -> bool:
 
 
 def escape_pressed() -> bool:
-    """True if Escape was pressed in this dialog, with nothing else open in it."""
+    """True if Escape was pressed in this dialog, with nothing else open in it.
+
+    The library closes an open list before a frame begins: what was open in the frame before took the key.
+    """
     inside = imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows.value)
-    return inside and imgui.is_key_pressed(imgui.Key.escape, False)
+    had_popup = imgui.get_state_storage().get_bool(_HAD_POPUP)
+    return inside and not had_popup and imgui.is_key_pressed(imgui.Key.escape, False)
 
 
 def _is_focus_below() -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
+from ..shared.window_commands import PanelTitle
 from ..toolkit.keys import chord
 from .editor import Editor
 
@@ -24,9 +25,8 @@ def run_shortcuts(editor: Editor) -> None:
     for button in range(3):
         editor.timeline.tapped &= not imgui.is_mouse_down(button)
     has_run = False
-    for action in editor.actions.all:
-        text = editor.actions.shortcut(action.id)
-        if not has_run and text and action.scope in ("", editor.scope) and _is_pressed(editor, text, action.repeats):
+    for action, text in editor.actions.list_shortcuts(editor.scope):
+        if not has_run and _is_pressed(editor, text, action.repeats):
             editor.actions.run(action.id)
             has_run = True
     for key in _TAKEN:
@@ -36,6 +36,8 @@ def run_shortcuts(editor: Editor) -> None:
 def _is_pressed(editor: Editor, text: str, repeats: bool) -> bool:
     keys = chord(text)
     key = imgui.Key(keys & ~_MODIFIERS)
+    if key == imgui.Key.tab and editor.interface.pointed_panel not in _WITH_SCOPES:
+        return False  # it walks through the fields of the panel under the pointer
     if key not in _TAKEN:
         return imgui.shortcut(keys, _ROUTE | _REPEAT if repeats else _ROUTE)
     if int(imgui.get_io().key_mods) != keys & _MODIFIERS:
@@ -51,6 +53,9 @@ _ANY_POPUP = int(imgui.PopupFlags_.any_popup)
 _MODIFIERS = sum(
     int(item) for item in (imgui.Key.mod_ctrl, imgui.Key.mod_shift, imgui.Key.mod_alt, imgui.Key.mod_super)
 )
+_WITH_SCOPES = (None, PanelTitle.GRAPH, PanelTitle.VIEWER, PanelTitle.ANIMATION)
+"""Panels with shortcuts of their own, and where there is no panel."""
+
 _TAKEN = (imgui.Key.space, imgui.Key.left_arrow, imgui.Key.right_arrow, imgui.Key.up_arrow, imgui.Key.down_arrow)
 """Keys that the library would use for buttons, if actions did not take them."""
 
