@@ -15,7 +15,7 @@ from halation.nodes import CameraModel, Kind, Node
 from halation.renderer import Renderer, RenderRequest
 from hypothesis import HealthCheck, settings
 
-pytest_plugins = ["selection", "children", "costs", "failures", "skips", "time_limits"]
+pytest_plugins = ["selection", "children", "costs", "failures", "recycling", "skips", "time_limits"]
 
 os.environ["LANGUAGE"] = "en"  # tests name what they see in English, whatever the language of the machine
 
@@ -31,6 +31,16 @@ Array = np.ndarray
 Run = Callable[..., Array]
 
 _KINDS = {1: Kind.FIELD, 2: Kind.VECTOR, 3: Kind.VECTOR, 4: Kind.IMAGE}
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Mesa's software rasterizer translates programs without optimizing them, except at night.
+
+    Tests draw small pictures with many programs, and most of their time is the compiler's: without a cache of shaders,
+    files of tests of nodes take two thirds of the time. The optimizer keeps to what a program computes, to the bit.
+    """
+    if not config.getoption("--nightly"):
+        os.environ.setdefault("GALLIVM_PERF", "nopt")
 
 
 def pytest_collection_finish() -> None:

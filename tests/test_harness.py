@@ -22,9 +22,9 @@ Suite = Callable[..., subprocess.CompletedProcess[str]]
 @pytest.fixture
 def suite(tmp_path: Path) -> Suite:
     """`suite(code, *words)` runs the tests in `code` with the plugins of this suite."""
-    (tmp_path / "pytest.ini").write_text(
-        "[pytest]\naddopts = -p selection -p children -p costs -p failures -p skips -p time_limits\ntimeout_grace = 1\n"
-    )
+    names = ("selection", "children", "costs", "failures", "recycling", "skips", "time_limits")
+    words = " ".join(f"-p {name}" for name in names)
+    (tmp_path / "pytest.ini").write_text(f"[pytest]\naddopts = {words}\ntimeout_grace = 1\nchild_memory = 1\n")
 
     def run_tests(code: str, *words: str) -> subprocess.CompletedProcess[str]:
         (tmp_path / "test_it.py").write_text(code)
@@ -85,6 +85,35 @@ def test_a_test_that_never_ends_is_named_and_the_rest_go_on(suite: Suite) -> Non
     for library in ("CDLL", "PyDLL"):
         assert f"crashed while running 'test_it.py::test_stuck[{library}]'" in ended.stdout
     assert "in test_stuck" in ended.stderr, "the stacks are printed"
+
+
+SHARING = """
+import os, pytest
+from pathlib import Path
+
+@pytest.fixture(scope="session")
+def lamp():
+    yield os.getpid()
+    Path("off").open("a").write(f"{os.getpid()} ")
+
+@pytest.mark.parametrize("number", range(3))
+def test_lit(lamp, number):
+    Path("on").open("a").write(f"{os.getpid()} ")
+    assert lamp == os.getpid()
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="this system has no processes that are copies")
+def test_files_run_in_children_that_end_when_they_are_large(suite: Suite, tmp_path: Path) -> None:
+    """What tests share is made in each child and put away there; what crashes takes nothing else along."""
+    (tmp_path / "test_next.py").write_text(SHARING)
+    crash = "import os\ndef test_crash():\n    os._exit(7)\n"
+    ended = suite(SHARING + crash, "-n", "1", "-W", "ignore")
+    assert "1 failed, 6 passed" in ended.stdout, ended.stdout
+    assert "crashed while running 'test_it.py::test_crash' (exit code 7)" in ended.stdout
+    lit, off = (Path(tmp_path / name).read_text().split() for name in ("on", "off"))
+    assert lit[:3] == lit[:1] * 3 and lit[3:] == lit[3:4] * 3 and lit[0] != lit[3]
+    assert off == [lit[3]]  # the first child had no time for it
 
 
 def test_every_test_here_has_a_limit(request: pytest.FixtureRequest) -> None:

@@ -20,6 +20,7 @@ from types import FrameType
 from typing import Any
 
 import pytest
+from recycling import has_children
 
 GRACE = 60
 """Seconds that a test has to end itself after its limit: fixtures may have to end processes and devices."""
@@ -46,7 +47,9 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_timeout_set_timer(item: pytest.Item, settings: Any) -> bool:
-    """Start the two timers of a test."""
+    """Start the two timers of a test, in the process that runs it."""
+    if has_children(item.config):
+        return True
     seconds = float(settings.timeout)
 
     def stop(_: int, frame: FrameType | None) -> None:

@@ -17,13 +17,13 @@ from halation.nodes import catalogue
 from halation.resources.sandbox import UNRESTRICTED
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from jsonschema import Draft202012Validator
+from json_schemas import make_validator
 from random_graphs import random_graph
 from toy_nodes import TOYS, Gain
 
 PRESETS = sorted((Path(__file__).parents[2] / "presets").glob("*.json"))
 SCHEMA = json.loads(json.dumps(schema(catalogue())))
-VALIDATOR = Draft202012Validator(SCHEMA)
+VALIDATOR = make_validator(SCHEMA)
 GRAPH = {
     "halation": FORMAT,
     "inputs": {"beauty": {"type": "Image"}},
@@ -58,7 +58,7 @@ def refused(tree: dict) -> bool:
 
 
 def test_it_is_a_schema() -> None:
-    Draft202012Validator.check_schema(SCHEMA)
+    VALIDATOR.check_schema(SCHEMA)
     assert not refused(GRAPH) and VALIDATOR.is_valid(GRAPH)
 
 
@@ -201,7 +201,7 @@ def test_values_of_an_older_version_are_not_looked_at() -> None:
     class NewGain(Gain):
         version = 3
 
-    validator = Draft202012Validator(schema({**TOYS, "gain": NewGain}))
+    validator = make_validator(schema({**TOYS, "gain": NewGain}))
     for version, valid in ((1, True), (2, True), (3, False), (4, False)):
         tree = {"halation": FORMAT, "nodes": {"a": {"type": "gain", "version": version, "values": {"gain": "much"}}}}
         assert validator.is_valid(tree) == valid
