@@ -20,8 +20,10 @@ pytest_plugins = ["selection", "children", "costs", "failures", "recycling", "sk
 os.environ["LANGUAGE"] = "en"  # tests name what they see in English, whatever the language of the machine
 
 # A busy machine is no fault of what is tested: examples may take as long as they take.
-settings.register_profile("halation", deadline=None, suppress_health_check=[HealthCheck.too_slow])
-settings.load_profile("halation")
+UNHURRIED = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.register_profile("daily", UNHURRIED, max_examples=50)
+settings.register_profile("nightly", UNHURRIED, max_examples=500)
+settings.load_profile("daily")
 
 BUDGET = 16 * 2**20
 """Bytes of results that the renderer keeps: few pictures of tests are asked for again. With the 512 MiB of the product
@@ -34,12 +36,14 @@ _KINDS = {1: Kind.FIELD, 2: Kind.VECTOR, 3: Kind.VECTOR, 4: Kind.IMAGE}
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Mesa's software rasterizer translates programs without optimizing them, except at night.
+    """At night more examples are tried, and Mesa's software rasterizer optimizes programs.
 
     Tests draw small pictures with many programs, and most of their time is the compiler's: without a cache of shaders,
     files of tests of nodes take two thirds of the time. The optimizer keeps to what a program computes, to the bit.
     """
-    if not config.getoption("--nightly"):
+    if config.getoption("--nightly"):
+        settings.load_profile("nightly")
+    else:
         os.environ.setdefault("GALLIVM_PERF", "nopt")
 
 

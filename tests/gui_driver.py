@@ -28,9 +28,9 @@ FRAME_SECONDS = 1.0 / 60.0
 PATIENCE = 120.0
 """Seconds of real time after which what never became true fails a test; a busy machine needs some of them."""
 
-PROMPT, REST = 0.5, 0.02
+PROMPT, REST = 0.5, 0.1
 """Seconds after which what a test waits for is taken for the work of another process, and then between two frames: a
-window that draws all the time takes the processor from whoever it waits for."""
+window that draws all the time takes the processor from whoever it waits for. Its own preview is made in frames."""
 
 UNSEEN = 0.1
 """The part of the window's width and height that is drawn while nobody looks. With 0 the library ends the process."""
@@ -72,7 +72,7 @@ class Ui:
         while not question():
             waited = time.monotonic() - began
             assert waited < seconds, "this never became true"
-            if waited > PROMPT:
+            if waited > PROMPT and not self.editor.preview.busy:
                 time.sleep(REST)
             self.ctx.yield_()
 

@@ -285,8 +285,8 @@ def test_an_interruption_leaves_what_is_finished(movie, tmp_path):
 
 @POSIX
 def test_kills_leave_no_half_frame_and_resume_ends_the_same(cli, movie, tmp_path, is_nightly):
-    """40 processes, 200 at night, killed at random moments of a sequence with history; then one that ends by itself."""
-    count = 200 if is_nightly else 40
+    """16 processes, 200 at night, killed at random moments of a sequence with history; then one that ends by itself."""
+    count = 200 if is_nightly else 16
     path = movie(*TRAIL)
     rendered(cli, path, "whole.####.exr")
     whole = {frame: (tmp_path / f"whole.{frame:04d}.exr").read_bytes() for frame in FRAMES}

@@ -1,7 +1,4 @@
-"""The whole editor, killed at any moment: the last save is whole, unsaved work is offered again, as new as promised.
-
-HALATION_KILLS=500 kills it so often; a few times will do otherwise.
-"""
+"""The whole editor, killed at any moment: the last save is whole, unsaved work is offered again, as new as promised."""
 
 from __future__ import annotations
 
@@ -20,7 +17,6 @@ from halation.authoring.recovery.recovery import RecoveryFile
 from halation.graph import Port
 from halation.resources.sandbox import UNRESTRICTED
 
-ROUNDS = int(os.environ.get("HALATION_KILLS", "10"))
 LOOK = next(path for path in presets.paths() if path.stem == "agx_look")
 STOPS, AUTOSAVE = Port("tone", "exposure"), 0.5
 
@@ -78,11 +74,12 @@ def killed(path: Path, state: Path, delay: float) -> Killed:
 
 
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
-def test_killed_while_editing_and_saving(tmp_path: Path) -> None:
+def test_killed_while_editing_and_saving(tmp_path: Path, is_nightly: bool) -> None:
+    rounds = 100 if is_nightly else 5
     path, state, chance = tmp_path / "look.json", tmp_path / "state", random.Random(4)
     shutil.copy(LOOK, path)
     offered = 0
-    for round in range(ROUNDS):
+    for round in range(rounds):
         one = killed(path, state, chance.uniform(0.0, 0.4) if round % 5 else chance.uniform(1.2, 1.8))
         there = document.load(path, sandbox=UNRESTRICTED).value(STOPS) * 1024
         assert not one.saved or one.saved <= there <= one.saved + 7, "the last save is whole"
@@ -96,4 +93,4 @@ def test_killed_while_editing_and_saving(tmp_path: Path) -> None:
             found.discard()
         after.close()
         assert not list((state / "recovery").iterdir())
-    assert offered >= ROUNDS // 5
+    assert offered >= rounds // 5
