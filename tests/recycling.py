@@ -120,7 +120,7 @@ class ChildRunner:
                 self._config.pluginmanager.unregister(plugin)
         items, hook = session.items, self._config.hook
         while (order := worker.recv()) is not None:
-            item, nextitem = (None if place is None else items[place] for place in order)
+            item, nextitem = items[order[0]], None if order[1] is None else items[order[1]]
             hook.pytest_runtest_protocol(item=item, nextitem=nextitem)
             is_last = nextitem is None or (nextitem.path != item.path and self._is_large())
             if is_last:
