@@ -25,9 +25,12 @@ import pytest
 from _pytest.runner import runtestprotocol
 from children import MARK, end_process, list_marked
 
-LARGE = 800
+LARGE = 750
 """MiB of memory of a child above which another one runs the next file of tests. Half a gigabyte of it is what the
-worker has read, and no file takes more than 400 MiB."""
+worker has read."""
+
+MARGIN = 250
+"""More MiB, above which another one runs the rest of a file, where it makes anew what the tests of the file share."""
 
 _RUNNER = pytest.StashKey["ChildRunner"]()
 
@@ -122,16 +125,17 @@ class ChildRunner:
         while (order := worker.recv()) is not None:
             item, nextitem = items[order[0]], None if order[1] is None else items[order[1]]
             hook.pytest_runtest_protocol(item=item, nextitem=nextitem)
-            is_last = nextitem is None or (nextitem.path != item.path and self._is_large())
+            is_last = nextitem is None or self._is_large(0 if nextitem.path != item.path else MARGIN)
             if is_last:
                 session._setupstate.teardown_exact(None)
             write = hook.pytest_report_to_serializable
             worker.send(([write(config=self._config, report=report) for report in self._reports], is_last))
         session._setupstate.teardown_exact(None)
 
-    def _is_large(self) -> bool:
+    def _is_large(self, margin: int) -> bool:
+        """Whether this process has more memory than it should, and that many MiB."""
         pages = int(Path("/proc/self/statm").read_text().split()[1])
-        return pages * os.sysconf("SC_PAGE_SIZE") > 2**20 * float(self._config.getini("child_memory"))
+        return pages * os.sysconf("SC_PAGE_SIZE") > 2**20 * (float(self._config.getini("child_memory")) + margin)
 
 
 class TestChild:
