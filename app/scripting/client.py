@@ -12,8 +12,9 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO, TYPE_CHECKING, Any, Self
 
-from ..errors import RenderError, rebuild_fault
+from ..errors import OutputError, RenderError, rebuild_fault
 from ..resources.program import module_command
+from .array_file import make_array_file
 from .packed_arrays import pack_array, read_pictures, write_message
 
 if TYPE_CHECKING:
@@ -35,9 +36,13 @@ class ServiceConnection:
     """
 
     def __init__(self, requests: IO[bytes], replies: IO[bytes], close: Callable[[], None]) -> None:
-        self._requests, self._replies, self._close = requests, replies, close
-        self._lock = threading.Lock()
+        self._requests, self._replies = requests, replies
+        self._lock = threading.RLock()
         self._count = 0
+        with contextlib.ExitStack() as stack:
+            stack.callback(close)
+            self._array_file = stack.enter_context(make_array_file())
+            self._closing = stack.pop_all()
 
     def render(
         self,
@@ -54,12 +59,14 @@ class ServiceConnection:
         """
         files = output if isinstance(output, Mapping) else {} if output is None else {"": output}
         packed_files = {name: str(path) for name, path in files.items()}
-        request = _make_request("render", graph, inputs, values, {"output": packed_files, **options})
-        line = self._exchange(request)
-        pictures = read_pictures(line)
-        if pictures is None:
-            _read_reply(line)  # files are written, or there is an error
-        return pictures or {}
+        with self._lock:
+            try:
+                return self._render(graph, inputs, values, {"output": packed_files, **options})
+            except OutputError:
+                if files or self._array_file is None:
+                    raise
+                self._array_file = None  # the server has a --root, or the memory for files is full
+                return self._render(graph, inputs, values, options)
 
     def make_thumbnail(
         self,
@@ -90,7 +97,7 @@ class ServiceConnection:
 
     def close(self) -> None:
         """End the connection."""
-        self._close()
+        self._closing.close()
 
     def __enter__(self) -> Self:
         return self
@@ -99,6 +106,25 @@ class ServiceConnection:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+    def _render(
+        self,
+        graph: str | Path | Graph,
+        inputs: Mapping[str, Binding] | None,
+        values: Mapping[str, Any] | None,
+        options: Mapping[str, Any],
+    ) -> dict[str, np.ndarray]:
+        """The outputs of a graph, through the file for arrays where there is one."""
+        array_file = self._array_file
+        if array_file is not None:
+            array_file.rewind()
+            options = {**options, "array_file": str(array_file.path)}
+        pack = pack_array if array_file is None else array_file.pack_array
+        line = self._exchange(_make_request("render", graph, inputs, values, options, pack))
+        pictures = read_pictures(line, array_file)
+        if pictures is None:
+            _read_reply(line)  # files are written, or there is an error
+        return pictures or {}
 
     def _exchange(self, request: Mapping[str, Any]) -> bytes:
         """Send a request and wait for the line of its reply. Raises RenderError."""
@@ -122,14 +148,15 @@ def _make_request(
     inputs: Mapping[str, Binding] | None,
     values: Mapping[str, Any] | None,
     options: Mapping[str, Any],
+    pack: Callable[[np.ndarray], dict[str, Any]] = pack_array,
 ) -> dict[str, Any]:
-    """A request without its id."""
+    """A request without its id; `pack` says what stands for an array."""
     import numpy as np
 
     from .. import document
 
     bindings = {
-        name: pack_array(binding.astype(np.float32, copy=False))
+        name: pack(binding.astype(np.float32, copy=False))
         if isinstance(binding, np.ndarray)
         else str(binding)
         if isinstance(binding, Path)

@@ -5,10 +5,8 @@ Their bytes are most of a line, so msgspec writes and reads them, as base64, in 
 
 from __future__ import annotations
 
-import base64
-import binascii
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -18,11 +16,16 @@ from ..errors import UsageError
 if TYPE_CHECKING:
     import numpy as np
 
+    from .array_file import ArrayFile
+
 
 class _PackedArray(msgspec.Struct):
+    """The `pixels` themselves, or where they begin in the file that the request has named."""
+
     shape: tuple[int, ...]
     type: str
-    pixels: bytes
+    pixels: bytes = b""
+    offset: int | None = None
 
 
 class _PictureReply(msgspec.Struct):
@@ -47,31 +50,37 @@ def write_message(message: Mapping[str, Any]) -> bytes:
     return json.dumps(message, ensure_ascii=False).encode("utf-8", "surrogateescape") + b"\n"
 
 
-def read_pictures(line: bytes) -> dict[str, np.ndarray] | None:
-    """The arrays in a line with the pictures of a render, by the name of the output; None for another line."""
+def read_pictures(line: bytes, array_file: ArrayFile | None = None) -> dict[str, np.ndarray] | None:
+    """The arrays in a line with the pictures of a render, by the name of the output; None for another line.
+
+    `array_file` is where their pixels are, if they are not in the line.
+    """
     try:
         reply = msgspec.json.decode(line, type=_PictureReply)
     except (msgspec.DecodeError, UnicodeDecodeError):
         return None
-    return {name: _make_array(packed.pixels, packed.type, packed.shape) for name, packed in reply.pictures.items()}
+    return {name: _make_array(packed, array_file) for name, packed in reply.pictures.items()}
 
 
-def unpack_array(name: str, packed: Mapping[str, Any]) -> np.ndarray:
+def unpack_array(name: str, packed: Mapping[str, Any], array_file: ArrayFile | None = None) -> np.ndarray:
     """The array in a part of a message that was read from JSON. Raises UsageError."""
     try:
-        pixels = base64.b64decode(packed["pixels"], validate=True)
-        return _make_array(pixels, packed["type"], [int(side) for side in packed["shape"]])
-    except (KeyError, TypeError, ValueError, binascii.Error) as fault:
+        return _make_array(msgspec.convert(packed, _PackedArray), array_file)
+    except ValueError as fault:
         raise UsageError(
             f"input '{name}': this is not an array ({fault}): write shape, type (float16 or float32) and pixels as "
             "base64, or the path of a file"
         ) from None
 
 
-def _make_array(pixels: bytes, type: str, shape: Sequence[int]) -> np.ndarray:
+def _make_array(packed: _PackedArray, array_file: ArrayFile | None) -> np.ndarray:
     """The array with these bytes. Raises ValueError."""
     import numpy as np
 
-    if type not in ("float16", "float32"):
-        raise ValueError(f"type {type}")
-    return np.frombuffer(pixels, type).reshape(shape)
+    if packed.type not in ("float16", "float32"):
+        raise ValueError(f"type {packed.type}")
+    if packed.offset is None:
+        return np.frombuffer(packed.pixels, packed.type).reshape(packed.shape)
+    if array_file is None:
+        raise ValueError("the request names no file with pixels")
+    return array_file.read_array(packed.type, packed.shape, packed.offset)

@@ -7,12 +7,14 @@ import json
 import tempfile
 import time
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from msgspec import Struct
 from msgspec.structs import replace
 
+from ..compiler.planner import MAX_REMEMBERED_PLANS
 from ..custom_nodes.plugins import find_graph_or_preset
 from ..document import load, loads
 from ..errors import RenderError, UsageError
@@ -25,6 +27,7 @@ from ..scripting.arguments import (
     check_size,
     check_target,
 )
+from ..scripting.array_file import ArrayFile, open_array_file
 from ..scripting.packed_arrays import pack_array, unpack_array
 from .request_queue import ServiceClient
 from .service_requests import ServiceRequest, describe_failure
@@ -58,6 +61,8 @@ class RenderService:
 
     def __init__(self, renderer: Renderer, sandbox: Sandbox, limits: ServiceLimits) -> None:
         self._renderer, self._sandbox, self._limits = renderer, sandbox, limits
+        self._recent_graphs: list[Graph] = []
+        """As they were loaded, the newest first."""
 
     def answer(self, client: ServiceClient, request: ServiceRequest) -> None:
         """Send the reply to a request, which may be an error; none to a client that has gone."""
@@ -97,8 +102,11 @@ class RenderService:
     def _render_pixels(self, request: ServiceRequest, check_request: Callable[..., None]) -> dict[str, Any]:
         """The pixels of all outputs."""
         graph = self._open_graph(request)
-        pictures = self._render(graph, self._make_render_request(graph, request), request.frame, check_request)[1]
-        return {"pictures": {name: pack_array(array) for name, array in pictures.items()}}
+        with self._open_array_file(request) as array_file:
+            render_request = self._make_render_request(graph, request, array_file)
+            pictures = self._render(graph, render_request, request.frame, check_request)[1]
+            pack = pack_array if array_file is None else array_file.pack_array
+            return {"pictures": {name: pack(array) for name, array in pictures.items()}}
 
     def _write_files(self, request: ServiceRequest, check_request: Callable[..., None]) -> dict[str, Any]:
         """Write the outputs to files, as `halation render` does."""
@@ -189,17 +197,31 @@ class RenderService:
             if isinstance(request.graph, str)
             else loads(json.dumps(request.graph), "-", sandbox=self._sandbox)
         )
+        graph = self._recall_graph(graph)
         for name, setting in request.set.items():
             is_expression = isinstance(setting, str) and setting.startswith("=")
             graph = graph.override(name, Expression(setting[1:].strip()) if is_expression else setting)
         return graph
 
-    def _make_render_request(self, graph: Graph, request: ServiceRequest) -> RenderRequest:
+    def _recall_graph(self, graph: Graph) -> Graph:
+        """The same graph as an earlier request had it: a plan follows that of a graph with the same parts."""
+        recent = self._recent_graphs
+        known = next((old for old in recent if old == graph and old.folder == graph.folder), graph)
+        self._recent_graphs = [known, *(old for old in recent if old is not known)][:MAX_REMEMBERED_PLANS]
+        return known
+
+    def _open_array_file(self, request: ServiceRequest) -> AbstractContextManager[ArrayFile | None]:
+        """The file for arrays that a request names, if it names one. Raises OutputError when it is entered."""
+        return open_array_file(request.array_file, self._sandbox) if request.array_file else nullcontext()
+
+    def _make_render_request(
+        self, graph: Graph, request: ServiceRequest, array_file: ArrayFile | None = None
+    ) -> RenderRequest:
         """What is rendered, from arguments that are checked as those of Python are."""
         from ..renderer import RenderRequest
 
         inputs = {
-            name: unpack_array(name, binding) if isinstance(binding, dict) else check_binding(name, binding)  # pyright: ignore[reportUnknownArgumentType]
+            name: unpack_array(name, binding, array_file) if isinstance(binding, dict) else check_binding(name, binding)  # pyright: ignore[reportUnknownArgumentType]
             for name, binding in request.input.items()
         }
         targets, size = check_target(graph, request.node), check_size(request.size)

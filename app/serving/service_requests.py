@@ -19,8 +19,9 @@ class ServiceRequest(Struct, frozen=True, forbid_unknown_fields=True, rename={"a
     """One request. `graph` is a file, the name of a preset, or a graph as JSON.
 
     `input` and `set` are those of the command line, with numbers as numbers; an input may also be an array (see
-    `unpack_array`). `output` are files by the name of an output, "" for all; without any, the reply holds the pixels.
-    `request` is what a `cancel` ends. `width` is that of a thumbnail.
+    `unpack_array`). `output` are files by the name of an output, "" for all; without any, the reply holds the pixels,
+    or `array_file` does, which may hold those of inputs too (see `ArrayFile`). `request` is what a `cancel` ends.
+    `width` is that of a thumbnail.
     """
 
     action: Literal["render", "thumbnail", "explain", "check", "cancel"]
@@ -34,6 +35,7 @@ class ServiceRequest(Struct, frozen=True, forbid_unknown_fields=True, rename={"a
     frame: int | None = None
     precision: Literal["half", "float"] | None = None
     output: dict[str, str] = field(default_factory=dict[str, str])
+    array_file: str = ""
     view: str = ""
     width: int = 320
     request: str | int | None = None

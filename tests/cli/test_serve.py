@@ -258,6 +258,10 @@ def test_nothing_outside_of_the_root_is_read(tmp_path, graphs):
         for graph in (outside, inside):
             with pytest.raises(hal.HalationError, match="lies outside of"):
                 connection.render(graph)
+        # Nor may the server write into the file of the client, so that pixels come as text.
+        graph, picture = hal.load(outside), np.random.default_rng(4).random((9, 14, 4), np.float32)
+        received = connection.render(graph, {"beauty": picture})["image"]
+        np.testing.assert_array_equal(received, hal.render(graph, {"beauty": picture})["image"])
         picture = write_exr(
             tmp_path / "fence" / "a.exr", {"Combined": np.ones((4, 4, 4), np.float32)}, {"Combined": "half"}
         )
@@ -358,8 +362,9 @@ def test_a_request_of_many_megabytes_arrives_whole(graphs):
     with hal.connect() as connection:
         graph = hal.load(graphs())
         for _ in range(2):
-            received = connection.render(graph, {"beauty": picture}, values={"light.stops": 1.0}, precision="float")
-            np.testing.assert_allclose(received["image"][..., :3], 2.0 * picture[..., :3], rtol=1e-5)
+            reply = connection.ask("render", graph, {"beauty": picture}, values={"light.stops": 1.0}, precision="float")
+            received = unpack_array("image", reply["pictures"]["image"])
+            np.testing.assert_allclose(received[..., :3], 2.0 * picture[..., :3], rtol=1e-5)
 
 
 def test_a_process_of_its_own_ends_with_the_connection(graphs):

@@ -47,6 +47,7 @@ OPENERS = {
     "cli/serve.py": "a copy of standard output, for replies alone",
     "cli/watchdog.py": "the same, where another process answers",
     "serving/service.py": "a thumbnail that it has just written to a temporary folder",
+    "scripting/array_file.py": "the file for arrays of a client, after it has checked the sandbox and the kind of file",
     "export/shipped_files.py": "texts of Halation that exports copy",
     "cli/chunk_worker.py": "small files that travel with chunks, in a temporary folder of ours",
     "cluster/versions.py": "the code of nodes that are installed",
