@@ -38,6 +38,14 @@ second, a container within ten or twenty."""
 _RETRY_INTERVAL = 0.5
 """Seconds between two tries to reach a scheduler again: a choice."""
 
+_QUIET = {
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.tick.interval": "1s",
+    "distributed.admin.system-monitor.interval": "10s",
+}
+"""Settings of Dask for workers here. It looks at its threads a hundred times a second, at its own delay fifty times, and
+at the machine twice, which took 35 to 50 ms of a processor each second with two workers, and 5 so; frames need it."""
+
 _LOCAL = re.compile(r"local(?::(?P<count>\d+))?")
 
 
@@ -157,17 +165,19 @@ def iterate_finished(client: Client, futures: Sequence[Future[str]]) -> Iterator
 @contextmanager
 def _start_cluster(count: int) -> Iterator[LocalCluster]:
     """A scheduler with workers on threads of this process: each renders in a process beside it anyway."""
+    import dask
     from distributed import LocalCluster
 
-    cluster = LocalCluster(
-        n_workers=count,
-        threads_per_worker=1,
-        processes=False,
-        dashboard_address=cast("str", None),
-        worker_dashboard_address=None,
-        memory_limit=0,
-        silence_logs=logging.CRITICAL,
-    )
+    with dask.config.set(_QUIET):
+        cluster = LocalCluster(
+            n_workers=count,
+            threads_per_worker=1,
+            processes=False,
+            dashboard_address=cast("str", None),
+            worker_dashboard_address=None,
+            memory_limit=0,
+            silence_logs=logging.CRITICAL,
+        )
     try:
         yield cluster
     finally:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
 import time
 
 import pytest
-from farms import FRAMES, read_frames
+from farms import FRAMES, SLOW, check_whole, customize, end_group, read_frames, wait_for_frames
 
 pytest.importorskip("distributed", reason="Dask is not installed")
 
@@ -51,6 +52,23 @@ def test_a_job_that_is_cancelled_leaves_finished_frames_and_nothing_else(halatio
     written = len(list(shot.glob("f.*.exr")))
     time.sleep(1.0)
     assert len(list(shot.glob("f.*.exr"))) == written < 4000 and not list(shot.glob(".halation-*"))
+
+
+def test_a_job_goes_on_when_the_worker_that_conducts_it_is_killed(halation, shot, make_farm, tmp_path):
+    from distributed import Client
+
+    farm, slow = make_farm(), customize(tmp_path / "slow", SLOW)
+    groups = {farm.start_worker(**slow) for _ in range(2)}
+    name = json.loads(send(halation, farm, "-o", "f.####.exr").out)["job"]
+    wait_for_frames(shot, 2)
+    with Client(farm.address, set_as_default=False) as client:
+        (conductor,) = (address for address, keys in client.processing().items() if name in keys)
+        process = client.run(os.getpid, workers=[conductor])[conductor]
+    assert os.getpgid(process) in groups
+    end_group(os.getpgid(process))
+    followed = halation("jobs", "--cluster", farm.address, "--follow", name)
+    assert followed.code == 0 and f"{name}  finished  8 of 8 frames" in followed.out, followed
+    check_whole(halation, shot)
 
 
 def test_only_workers_with_a_gpu_render_where_there_are_some(halation, shot, farm):
