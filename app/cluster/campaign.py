@@ -205,15 +205,16 @@ class FrameCampaign:
         if future.key not in self._sent:
             return
         _, assignment, _ = self._sent.pop(str(future.key))
-        if future.status == "finished":
-            try:
+        report = fault = None
+        with contextlib.suppress(Exception):  # worker or connection have gone: finished frames are kept
+            if future.status == "finished":
                 report = ChunkReport.from_json(future.result(timeout=_LOST_SECONDS))
-            except Exception:  # the worker has gone before the text was fetched: finished frames are kept
-                self._frames.put_back(assignment)
-                return
+            elif future.status == "error":
+                fault = cast("BaseException | None", future.exception(timeout=_LOST_SECONDS))
+        if report is not None:
             self._judge(report, assignment)
-        elif future.status == "error":
-            self._judge_loss(cast("BaseException | None", future.exception(timeout=_LOST_SECONDS)), assignment)
+        elif fault is not None:
+            self._judge_loss(fault, assignment)
         else:
             self._frames.put_back(assignment)
 
@@ -310,7 +311,7 @@ class FrameCampaign:
             self.report.seconds.pop(frame, None)
         return list(frames)
 
-    def _judge_loss(self, fault: BaseException | None, assignment: Assignment) -> None:
+    def _judge_loss(self, fault: BaseException, assignment: Assignment) -> None:
         """Decide about a chunk that Dask has given up: its workers ended, one after the other."""
         name = type(fault).__name__
         if name == "KilledWorker":

@@ -43,8 +43,12 @@ _QUIET = {
     "distributed.admin.tick.interval": "1s",
     "distributed.admin.system-monitor.interval": "10s",
 }
-"""Settings of Dask for workers here. It looks at its threads a hundred times a second, at its own delay fifty times, and
-at the machine twice, which took 35 to 50 ms of a processor each second with two workers, and 5 so; frames need it."""
+"""Settings of Dask for workers here. It looks at its threads a hundred times a second, at its delay fifty times, and at
+the machine twice: with two workers 28 to 50 ms of a processor each second, 5 with these settings."""
+
+_BROKEN = (OSError, AssertionError)
+"""What Dask raises where a connection breaks while it is opened. It asserts that the first words of a scheduler greet:
+one that ends at that moment says something else."""
 
 _LOCAL = re.compile(r"local(?::(?P<count>\d+))?")
 
@@ -84,8 +88,8 @@ def _connect(address: str, count: int) -> Iterator[Client]:
         target: str | LocalCluster = stack.enter_context(_start_cluster(count)) if count else address
         try:
             client = _open_client(target)
-        except (OSError, TimeoutError, ValueError, TypeError) as fault:
-            reason = "" if isinstance(fault, OSError | TimeoutError) else f" ({fault})"
+        except (*_BROKEN, ValueError, TypeError) as fault:
+            reason = "" if isinstance(fault, _BROKEN) else f" ({fault})"
             raise RenderError(
                 f"--cluster {address}: no scheduler answers there{reason}: start one with 'dask scheduler', or check "
                 "the address"
@@ -100,7 +104,7 @@ def _connect(address: str, count: int) -> Iterator[Client]:
 def _open_client(target: str | LocalCluster) -> Client:
     """A client of a cluster, tried again where a connection is closed at once, as by a scheduler that just starts.
 
-    Raises OSError, TimeoutError, and what Dask raises for what is no address.
+    Raises what is `_BROKEN`, and what Dask raises for what is no address.
     """
     import distributed
 
@@ -110,7 +114,7 @@ def _open_client(target: str | LocalCluster) -> Client:
             if isinstance(target, str):
                 _await_listener(target)
             return distributed.Client(target, timeout=ANSWER_SECONDS, set_as_default=False)
-        except OSError:
+        except _BROKEN:
             if time.monotonic() > deadline:
                 raise
         time.sleep(_RETRY_INTERVAL)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import random
 import subprocess
 import sys
@@ -80,7 +81,10 @@ class HarmedFarm:
 def render(folder: Path, *words: str) -> subprocess.Popen[str]:
     """Start a render of all frames in a folder."""
     command = [PYTHON, "-m", "halation.cli", "render", *words, "--deterministic"]
-    return subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    environment = {**os.environ, "HALATION_DEBUG": "1"}
+    return subprocess.Popen(
+        command, cwd=folder, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+    )
 
 
 def read_all(folder: Path) -> list[bytes]:
@@ -119,7 +123,7 @@ def try_once(folder: Path, number: int, draw: random.Random) -> tuple[str, list[
         harmed.farm.stop()
         harmed.proxy.close()
     if process.returncode:
-        return f"exit code {process.returncode}: {err.splitlines()[-1:]}", harms
+        return f"exit code {process.returncode}:\n{err}", harms
     frames = read_all(output)
     left = [path.name for path in output.iterdir() if path.name.startswith(".halation-shared-")]
     if frames != read_all(folder / name):
