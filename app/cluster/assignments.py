@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Sequence
 
@@ -19,6 +20,10 @@ takes some hundredths of a second: about 1 % of this time. Chosen so, and short 
 
 MAX_CHUNK = 1000
 """Frames of a chunk at most: of frames that cost nothing, since a message must stay small. A choice."""
+
+DISPATCH_SECONDS = 0.005
+"""Seconds that sender and scheduler take for a chunk, the slower of both, rounded up: `tests/bench/cluster.py costs`
+measures it. Half of it lets a thousand workers wait for the scheduler, twice of it makes the end less even."""
 
 MAX_ATTEMPTS = 3
 """How often a frame may end its process: once, and on two other workers."""
@@ -39,6 +44,11 @@ class Assignment(Struct, frozen=True):
 def count_chunk(cost: float) -> int:
     """How many frames of a `cost` in seconds are a chunk; one while that is not known."""
     return max(1, min(int(CHUNK_SECONDS / cost) if cost > 0.0 else 1, MAX_CHUNK))
+
+
+def count_least_chunk(cost: float, slots: int) -> int:
+    """How many frames of a `cost` keep a worker busy while every other one is handed a chunk too."""
+    return min(math.ceil(slots * DISPATCH_SECONDS / cost), MAX_CHUNK) if cost > 0.0 else 1
 
 
 def average_cost(cost: float, seconds: Sequence[float]) -> float:
@@ -74,7 +84,8 @@ class AssignmentQueue:
         self._cost = average_cost(self._cost, seconds)
 
     def take(self, slots: int) -> Assignment | None:
-        """The next frames for a worker, of which `slots` render side by side. Towards the end chunks are smaller.
+        """The next frames for a worker, of which `slots` render side by side. Towards the end chunks are smaller, but
+        no faster than they can be handed out.
 
         None where frames must be finished first.
         """
@@ -83,7 +94,8 @@ class AssignmentQueue:
         if self._is_chain:
             count = len(self._fresh)
         else:
-            count = min(count_chunk(self._cost), max(1, len(self._fresh) // (2 * max(1, slots))))
+            even = min(count_chunk(self._cost), len(self._fresh) // (2 * max(1, slots)))
+            count = max(even, count_least_chunk(self._cost, slots))
         return Assignment(tuple(self._fresh.popleft() for _ in range(min(count, len(self._fresh)))))
 
     def put_back(self, assignment: Assignment) -> None:

@@ -85,7 +85,7 @@ def _connect(address: str, count: int) -> Iterator[Client]:
         logging.getLogger(name).setLevel(logging.CRITICAL)
     warnings.filterwarnings("ignore", module=r"distributed(\..*)?")
     with contextlib.ExitStack() as stack:
-        target: str | LocalCluster = stack.enter_context(_start_cluster(count)) if count else address
+        target: str | LocalCluster = stack.enter_context(start_cluster(count)) if count else address
         try:
             client = _open_client(target)
         except (*_BROKEN, ValueError, TypeError) as fault:
@@ -167,9 +167,9 @@ def iterate_finished(client: Client, futures: Sequence[Future[str]]) -> Iterator
 
 
 @contextmanager
-def _start_cluster(count: int) -> Iterator[LocalCluster]:
+def start_cluster(count: int) -> Iterator[LocalCluster]:
     """A scheduler with workers on threads of this process: each renders in a process beside it anyway."""
-    import dask
+    import dask.config
     from distributed import LocalCluster
 
     with dask.config.set(_QUIET):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -22,7 +22,11 @@ if TYPE_CHECKING:
     from distributed import Worker
 
 _REPORT_INTERVAL = 0.25
-"""Seconds between two messages about finished frames: a bar needs no more, and many workers share one scheduler."""
+"""Seconds between two messages about finished frames: a bar needs no more."""
+
+_REPORTS_PER_SECOND = 200
+"""Such messages from all workers together: each takes the scheduler and the sender some tenths of a millisecond, which
+`tests/bench/cluster.py costs` measures. A thousand workers would send four thousand."""
 
 _OWN_MEMORY = 512 << 20
 """Bytes that Python, driver and decoders take besides the pictures: about 400 MB, measured with Mesa 22.3."""
@@ -37,7 +41,7 @@ def render_chunk(text: str) -> str:
         return ChunkReport(worker.address, refusal=f"it has another version of Halation: {fault}").to_json()
     limit = read_memory_limit(worker)
     chunk = replace(chunk, job=replace(chunk.job, memory=choose_memory(chunk.job.memory, limit)))
-    reporter = _FrameReporter(worker, chunk.topic)
+    reporter = FrameReporter(worker, chunk)
     with open_pool().lend_process(find_kind(chunk.job), share_cores(chunk.slots, worker.address)) as process:
         report = process.render(chunk, reporter.report_frame, make_cancel_check(worker), limit)
     reporter.flush()
@@ -95,18 +99,23 @@ def make_cancel_check(worker: Worker) -> Callable[[], bool]:
     return is_cancelled
 
 
-class _FrameReporter:
+def find_report_interval(slots: Mapping[str, int]) -> float:
+    """Seconds between two messages of a worker about finished frames; `slots` as in `FrameChunk`."""
+    return max(_REPORT_INTERVAL, sum(slots.values()) / _REPORTS_PER_SECOND)
+
+
+class FrameReporter:
     """Tells the sender of a chunk which frames are finished, some at a time."""
 
-    def __init__(self, worker: Worker, topic: str) -> None:
-        self._worker, self._topic = worker, topic
+    def __init__(self, worker: Worker, chunk: FrameChunk) -> None:
+        self._worker, self._topic, self._interval = worker, chunk.topic, find_report_interval(chunk.slots)
         self._frames: list[dict[str, Any]] = []
         self._sent_at = time.monotonic()
 
     def report_frame(self, event: dict[str, Any]) -> None:
         """Note a finished frame, and send what has gathered from time to time."""
         self._frames.append(event)
-        if time.monotonic() - self._sent_at > _REPORT_INTERVAL:
+        if time.monotonic() - self._sent_at > self._interval:
             self.flush()
 
     def flush(self) -> None:

@@ -1,13 +1,14 @@
 """Measures `render --cluster`, and computes what a large cluster would reach: the figures of docs/cluster.md.
 
 .venv/bin/python tests/bench/cluster.py measure     # minutes, on an idle machine
+.venv/bin/python tests/bench/cluster.py overhead    # the same of frames that cost half a second
 .venv/bin/python tests/bench/cluster.py interrupt
-.venv/bin/python tests/bench/cluster.py simulate
+.venv/bin/python tests/bench/cluster.py simulate    # a cluster of a thousand workers
+.venv/bin/python tests/bench/cluster.py check       # the simulation against real jobs whose workers only wait
 """
 
 from __future__ import annotations
 
-import heapq
 import json
 import os
 import signal
@@ -15,7 +16,10 @@ import subprocess
 import sys
 import tempfile
 import time
+from dataclasses import replace
 from pathlib import Path
+
+from cluster_simulation import ClusterCosts, ClusterSimulation
 
 WORKERS = os.cpu_count() or 1
 
@@ -64,13 +68,16 @@ def measure_overhead(folder: Path, size: str, counts: tuple[int, int], rounds: i
             for name, share in shares.items():
                 words = ("shot.json", "--size", size, "--frames", f"1-{count}", "-o", "f.####.exr")
                 measured.setdefault((name, count), []).append(run(folder, *words, *share)[:2])
+    processors: list[float] = []
     for name in shares:
         few, many = (measured[name, count] for count in counts)
         per_frame = [
             (min(pair[part] for pair in many) - min(pair[part] for pair in few)) / (counts[1] - counts[0])
             for part in (0, 1)
         ]
+        processors.append(per_frame[1])
         print(f"{name}: {per_frame[0]:.4f} s a frame, {per_frame[1]:.4f} s of processors", few, many)
+    print(f"a frame takes {processors[1] / processors[0]:.3f} of processors on the cluster (wanted: at most 1.05)")
 
 
 def measure_scaling(folder: Path, frames: int, size: str) -> None:
@@ -133,35 +140,42 @@ def interrupt_render(folder: Path, share: tuple[str, ...]) -> float:
         return time.perf_counter() - began
 
 
-def simulate(
-    workers: int, frames: int, render: float, bytes_read: float, storage: float, chunk_seconds: float
-) -> float:
-    """Seconds for all frames: each chunk waits for the scheduler, then for the storage, then renders."""
-    scheduler, dispatch, drain = 0.0, 0.004, 0.04
-    size = max(1, int(chunk_seconds / render))
-    free = [(0.6, number) for number in range(workers)]
-    storage_free = end = 0.0
-    left = frames
-    while left:
-        at, number = heapq.heappop(free)
-        count = min(size, max(1, left // (2 * workers)), left)
-        left -= count
-        scheduler = max(scheduler, at) + dispatch
-        storage_free = max(storage_free, scheduler) + count * bytes_read / storage
-        done = max(scheduler + count * render + drain, storage_free)
-        end = max(end, done)
-        heapq.heappush(free, (done, number))
-    return end
+def measure_costs(workers: int, chunks: int) -> ClusterCosts:
+    """What sender and scheduler take for a chunk, both together, measured with frames that take no time."""
+    from cluster_stand_in import open_waiting_cluster, run_job
+
+    with open_waiting_cluster(workers) as client:
+        run_job(client, 2 * workers, 0.0)
+        seconds, used, _ = run_job(client, chunks, 0.0, singly=True)
+    print(f"{chunks} chunks: {seconds / chunks * 1e3:.2f} ms each, {used / chunks * 1e3:.2f} ms of processors")
+    return ClusterCosts(sender=0.0, scheduler=seconds / chunks, report=0.0, decode=0.0, encode=0.0)
+
+
+def check_simulation() -> None:
+    """Compare the simulation with real jobs whose workers only wait, on this machine."""
+    from cluster_stand_in import open_waiting_cluster, run_job
+
+    costs = replace(measure_costs(16, 500), render=0.25)
+    for workers in (4, 16, 64):
+        frames = 40 * workers
+        with open_waiting_cluster(workers) as client:
+            seconds, _, chunks = run_job(client, frames, costs.render)
+        simulated = ClusterSimulation(costs, workers, frames).run()
+        facts = f"{seconds:.2f} s in {chunks} chunks, simulated {simulated.end:.2f} s in {simulated.chunk_count}"
+        print(f"{workers} workers, {frames} frames of {costs.render} s: {facts}")
 
 
 def print_simulation() -> None:
     """A table for docs/cluster.md: 100,000 frames."""
-    print("| seconds a frame | MB read | workers | frames a second | share of the ideal |")
+    print("| seconds a frame | MB read | workers | frames a second | share of the ideal | busiest |")
     for render, megabytes in ((0.1, 0.0), (0.5, 0.0), (0.5, 10.0), (5.0, 10.0), (5.0, 50.0)):
         for workers in (10, 100, 1000):
-            seconds = simulate(workers, 100_000, render, megabytes * 1e6, 2.5e9, 4.0)
-            ideal = 100_000 * render / workers
-            print(f"| {render} | {megabytes:g} | {workers} | {100_000 / seconds:.0f} | {ideal / seconds:.0%} |")
+            costs = ClusterCosts(render=render, bytes_read=megabytes * 1e6)
+            job = ClusterSimulation(costs, workers, 100_000).run()
+            shares = job.list_shares()
+            busiest = max(shares, key=lambda part: shares[part])
+            facts = f"{100_000 / job.end:.0f} | {shares['workers']:.0%} | {busiest} {shares[busiest]:.0%}"
+            print(f"| {render} | {megabytes:g} | {workers} | {facts} |")
 
 
 def main() -> None:
@@ -169,11 +183,17 @@ def main() -> None:
     if sys.argv[1:2] == ["simulate"]:
         print_simulation()
         return
+    if sys.argv[1:2] == ["check"]:
+        check_simulation()
+        return
     print(f"{WORKERS} cores, load {os.getloadavg()[0]:.1f}")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         if sys.argv[1:2] == ["interrupt"]:
             measure_interrupt(folder, 5)
+            return
+        if sys.argv[1:2] == ["overhead"]:
+            measure_overhead(folder, "2880x1620", (4, 28), 3)
             return
         measure_rate(folder, 10_000)
         measure_overhead(folder, "1280x720", (4, 44), 3)
