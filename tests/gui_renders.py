@@ -41,6 +41,7 @@ def renders(ui: Ui) -> Iterator[str]:
     ui.editor.exports.all = ()
     ui.click("Frames")
     ui.click(f"Frames {name_choice('many files')}")
+    assert "Fill" not in ui.editor.places, "the other input is a number, which no file fills"
     yield "renders_many_files"
     ui.click("render cluster")
     ui.type("tcp://farm:8786")

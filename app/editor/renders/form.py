@@ -107,9 +107,14 @@ class RenderForm:
             if (low, high) != (first, last):
                 extents["playback range"] = tuple(range(low, high + 1))
         extents["listed frames"] = _parse_listed(self.listed)[0]
-        if session.root.inputs:
+        if self.list_file_inputs():
             extents["many files"] = ()
         return extents
+
+    def list_file_inputs(self) -> tuple[str, ...]:
+        """The inputs of the graph that many files can fill: those of pictures."""
+        inputs = self.context.session.root.inputs
+        return tuple(name for name, end in inputs.items() if not end.kind.is_single)
 
     def extent_of(self) -> Extent:
         """The chosen one of the `extents`."""

@@ -40,16 +40,20 @@ _PATTERN = "photos/*.jpg"
 
 
 def draw_form(context: RendersContext, form: RenderForm) -> None:
-    """Draw the form: the choices, the files that would be written, and the button."""
+    """Draw the choices of the form, and the files that would be written."""
     _draw_files(context, form)
     _draw_frames(context, form)
     _draw_options(context, form)
-    aim = form.targets(imgui.get_time())
     imgui.dummy((0, 2 * ui_scale()))
-    _draw_consequences(context, form, aim)
+    _draw_consequences(context, form, form.targets(imgui.get_time()))
+
+
+def draw_start_button(context: RendersContext, form: RenderForm, width: float) -> None:
+    """Draw the button that begins a render, or lets it wait."""
     waits = bool(context.exports.unfinished)
     title = f"{icons.ICON_FA_FILM}  {translate('Add to the queue') if waits else translate('Render')}"
-    if main_button(context, title, "render", enabled=not aim.fault, width=imgui.get_content_region_avail().x):
+    is_ready = not form.targets(imgui.get_time()).fault
+    if main_button(context, title, "render", enabled=is_ready, width=width):
         context.log.attempt(lambda: form.start())
 
 
@@ -139,7 +143,7 @@ def _draw_workers(context: RendersContext, form: RenderForm) -> None:
 
 def _draw_many_files(context: RendersContext, form: RenderForm) -> None:
     """Draw the field for the files, and which input they fill."""
-    inputs = tuple(context.session.root.inputs)
+    inputs = form.list_file_inputs()
     name = form.many.input if form.many.input in inputs else inputs[0]
     label(translate("Files"), _label_width())
     imgui.set_next_item_width(-width_of_buttons(icons.ICON_FA_FOLDER_OPEN) - 4 * ui_scale())

@@ -12,7 +12,7 @@ from ...language.translation import translate
 from ..theme.style import ui_scale
 from ..toolkit.words import draw_empty_panel
 from .form import RenderForm
-from .form_view import draw_form
+from .form_view import draw_form, draw_start_button
 from .queue_view import RenderQueueView
 
 if TYPE_CHECKING:
@@ -47,12 +47,16 @@ class RendersPanel:
         room, scale = imgui.get_content_region_avail(), ui_scale()
         if room.x < _WIDE * scale:
             draw_form(self._context, form)
+            draw_start_button(self._context, form, room.x)
             imgui.separator()
             self._queue.draw()
             return
-        imgui.begin_child("form", ImVec2(_FORM * scale, room.y), _FLAT)
+        imgui.begin_group()
+        imgui.begin_child("form", ImVec2(_FORM * scale, room.y - imgui.get_frame_height_with_spacing()), _FLAT)
         draw_form(self._context, form)
         imgui.end_child()
+        draw_start_button(self._context, form, _FORM * scale)
+        imgui.end_group()
         imgui.same_line(0, 20 * scale)
         imgui.begin_child("queue", ImVec2(0, room.y), _FLAT)
         self._queue.draw()
