@@ -313,7 +313,8 @@ class Window:
     def _rest(self) -> None:
         """Say how often the next frames come."""
         editor, time_now = self.editor, imgui.get_time()
-        if self._updater.is_working or editor.timeline.playback.playing or editor.viewer.finding:
+        has_begun = self.frames > _HIDDEN + 1
+        if not has_begun or self._updater.is_working or editor.timeline.playback.playing or editor.viewer.finding:
             self._worked_at = time_now
         resting = self.params.fps_idling
         resting.enable_idling = time_now - self._worked_at > GRACE and not self._input
