@@ -25,8 +25,8 @@ _LONG = 4000
 CHANNELS = {name: place for letters in ("xyzw", "rgba") for place, name in enumerate(letters)}
 
 
-def evaluate_at_frame(graph: Graph, frame: int) -> Graph:
-    """The graph with every animated value, also in groups, set to its value at a frame.
+def evaluate_at_frame(graph: Graph, frame: float) -> Graph:
+    """The graph with every animated value, also in groups, set to its value at a frame, or between two.
 
     Raises GraphError for an expression that has no value at this frame, or that depends on itself.
     """
@@ -122,7 +122,7 @@ def _is_animated_number(item: Item, name: str) -> bool:
 class _FrameEvaluation:
     """Evaluates graphs and their groups at one frame."""
 
-    def __init__(self, frame: int, settings: Settings) -> None:
+    def __init__(self, frame: float, settings: Settings) -> None:
         self._frame, self._settings = frame, settings
 
     def evaluate(self, graph: Graph) -> Graph:
@@ -146,7 +146,7 @@ class _ValueEvaluation:
     that it does not use at this frame.
     """
 
-    def __init__(self, graph: Graph, frame: int, settings: Settings) -> None:
+    def __init__(self, graph: Graph, frame: float, settings: Settings) -> None:
         self._graph, self._frame, self._settings = graph, frame, settings
         self._named: dict[str, tuple[Port, int | None]] = {}
         self._results: dict[Port, Plain | GraphError] = {}
@@ -209,7 +209,7 @@ class _ValueEvaluation:
         except GraphError as error:
             if len(str(error)) > _LONG:  # it comes through many expressions, each of which would make it longer
                 raise
-            raise GraphError(f"{port} at frame {self._frame}: {error}", node=port.node) from None
+            raise GraphError(f"{port} at frame {self._frame:g}: {error}", node=port.node) from None
         return fit_to_value(port, value, number, self._frame)
 
     def _evaluate_name(self, name: str) -> Scalar:
@@ -220,7 +220,7 @@ class _ValueEvaluation:
         return plain[channel] if channel is not None and isinstance(plain, tuple) else plain
 
 
-def fit_to_value(port: Port, value: Value, computed: Scalar, frame: int) -> Scalar:
+def fit_to_value(port: Port, value: Value, computed: Scalar, frame: float) -> Scalar:
     """Convert a computed number to the type of a value: rounded for an int, limited to the hard range.
 
     A single number is used for all channels. Raises GraphError if it does not fit.
@@ -233,7 +233,7 @@ def fit_to_value(port: Port, value: Value, computed: Scalar, frame: int) -> Scal
         computed = computed != 0
     plain = coerce_scalar(value, computed)
     if plain is None:
-        raise GraphError(f"{port} at frame {frame} is {computed!r}: it takes {describe_type(value)}", node=port.node)
+        raise GraphError(f"{port} at frame {frame:g} is {computed!r}: it takes {describe_type(value)}", node=port.node)
     if isinstance(plain, bool | str):
         return plain
     if isinstance(plain, tuple):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Annotated, ClassVar, Literal, Protocol
+from typing import Annotated, Any, ClassVar, Literal, Protocol
 
 from msgspec import Struct
 
@@ -139,6 +139,10 @@ class Draw(Protocol):
 
     def at(self, socket: Socket, frame: int) -> Drawn:
         """An input at another frame, which must be one of the node's `times`."""
+        ...
+
+    def settings_at(self, time: float) -> Mapping[str, Any]:
+        """The values of the node by name, as they are at a time in frames, which may lie between two of them."""
         ...
 
     def __call__(

@@ -40,6 +40,10 @@ class RotoMode(StrEnum):
     UNION = "union"
     SUBTRACT = "subtract"
     INTERSECT = "intersect"
+    MAX = "max"
+    MIN = "min"
+    DIFFERENCE = "difference"
+    PLUS = "plus"
 
 
 class RotoShape(Struct, frozen=True):
@@ -50,7 +54,11 @@ class RotoShape(Struct, frozen=True):
         Doc("A row for each point: x, y, the two tangents as offsets, and a feather in addition to that of the shape."),
     ] = make_ellipse(0.5, 0.5, 0.4, 0.5)
     mode: Annotated[
-        Literal["union", "subtract", "intersect"], Doc("How the shape is combined with those before it, by name.")
+        Literal["union", "subtract", "intersect", "max", "min", "difference", "plus"],
+        Doc(
+            "How the shape is combined with those before it, by name. Where shapes share an edge, plus leaves no seam. "
+            "Difference is what only one of both covers."
+        ),
     ] = "union"
     on: Annotated[bool, Doc("Whether the shape counts.")] = True
     opacity: Annotated[Fraction, Doc("How much of the shape counts.")] = 1.0
@@ -73,6 +81,9 @@ class RotoShape(Struct, frozen=True):
         0.5,
         0.5,
     )
+    motion_blur: Annotated[
+        bool, Doc("Blur the shape by its own movement, as far as the shutter of the node is open.")
+    ] = True
     lifetime: Annotated[Literal["all", "range"], Doc("The frames at which it counts: all, or from first to last.")] = (
         "all"
     )
@@ -107,9 +118,9 @@ ROTO_SHAPES = Items((_declare_kind(),), "shape", MAX_ROTO_SHAPES, ordered=True)
 RotoShapeSet = Annotated[ItemSet, ROTO_SHAPES]
 
 
-def roto_shapes_of(items: ItemSet) -> tuple[RotoShape, ...]:
-    """The outlines that a value holds, in the order of their names."""
-    return tuple(RotoShape(**ROTO_SHAPES.settings(item)) for item in items.values())
+def roto_shapes_of(items: ItemSet) -> dict[str, RotoShape]:
+    """The outlines that a value holds by name, in their order."""
+    return {name: RotoShape(**ROTO_SHAPES.settings(item)) for name, item in items.items()}
 
 
 def name_roto_shapes(**outlines: RotoShape) -> ItemSet:

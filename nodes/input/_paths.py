@@ -21,7 +21,7 @@ BLOCK = 16
 """Spans side by side in the tables, so that no table is higher than a texture can be."""
 
 PathMode = int
-"""How an outline changes the mask below: 0 is added, 1 is cut out, 2 is kept, 3 is the larger of both."""
+"""How an outline changes the mask below: a place in the list of `RotoMode`."""
 
 
 class PathFill(NamedTuple):

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 from itertools import groupby, pairwise
-from typing import Annotated, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 from .._declare import (
     RGBA,
@@ -19,6 +19,7 @@ from .._declare import (
     RotoShape,
     RotoShapeSet,
     Size,
+    Slider,
     Vector,
     curve_point,
     list_curves,
@@ -96,39 +97,79 @@ class Roto(Filter):
         shape_1=RotoShape()
     )
     color: Annotated[RGBA, Doc("The color of the picture, premultiplied.")] = (1.0, 1.0, 1.0, 1.0)
+    shutter: Annotated[
+        float,
+        Slider(
+            0.0, 360.0, unit="deg", minimum=0.0, maximum=720.0,
+            doc="Motion blur by the keys of the shapes: at 360 the shutter is open from frame to frame, at 0 never.",
+        ),
+    ] = 0.0  # fmt: skip
+    phase: Annotated[
+        Literal["centered", "start", "end"],
+        Doc("When the shutter is open: around the frame, from the frame on (start) or until the frame (end)."),
+    ] = "centered"
+    samples: Annotated[
+        int, Slider(4, 64, unit="count", minimum=2, maximum=256, doc="At how many times a moving shape is drawn.")
+    ] = 16
 
     out = OutputSocket(Image(doc="The color where the shapes are, transparent elsewhere."))
     mask = OutputSocket(Field(doc="How much of each pixel the shapes cover, 0..1."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
-        shapes = self._list_active(draw)
-        mask = draw.point("roto_matte", self.matte, result=Field())
-        paths = [_trace_path(outline, draw.size) for outline in shapes]
-        for is_soft, run in groupby(paths, lambda path: path.feather > 0.0):
-            if is_soft:
-                for path in run:
-                    mask = self._draw_soft(draw, mask, path)
-            else:
-                mask = _draw_coverage(draw, mask, list(run))
+        matte = draw.point("roto_matte", self.matte, result=Field())
+        masks = [_draw_mask(draw, matte, outlines) for outlines in self._list_moments(draw)]
+        mask = masks[0]
+        if len(masks) > 1:
+            mask = draw("path_nothing", size=(1, 1), result=Field())
+            for moment in masks:
+                mask = draw.point("roto_expose", total=mask, mask=moment, result=Field(), part=1.0 / len(masks))
         return {"out": draw.point("roto_fill", mask=mask, color=self.color), "mask": mask}
 
-    def _list_active(self, draw: Draw) -> list[RotoShape]:
-        """The outlines that count at this frame. The frame is asked for only where a range depends on it."""
-        outlines = [outline for outline in roto_shapes_of(self.shapes) if outline.on]
-        if any(outline.lifetime == "range" for outline in outlines):
-            outlines = [outline for outline in outlines if outline.is_active(draw.frame)]
-        return outlines
+    def _list_moments(self, draw: Draw) -> list[list[RotoShape]]:
+        """The outlines that count at this frame, at each time that the mask is a mean of: one, if nothing moves.
 
-    def _draw_soft(self, draw: Draw, mask: Drawn, path: _Path) -> Drawn:
-        """One outline with a feather: its exact coverage says which side of the edge a pixel is on."""
-        outline = path.outline
-        nothing = draw("path_nothing", size=(1, 1), result=Field())
-        cover = _draw_coverage(draw, nothing, [path._replace(outline=RotoShape())])
-        nearest = draw_distance(draw, _list_chords(path), 0.5 * path.feather)
-        return draw.point(
-            "roto_soft", mask=mask, cover=cover, nearest=nearest, result=Field(),
-            mode=_MODES.index(outline.mode), feather=outline.feather, opacity=outline.opacity, invert=outline.invert,
-        )  # fmt: skip
+        The frame is asked for only where something depends on it.
+        """
+        active = {name: outline for name, outline in roto_shapes_of(self.shapes).items() if outline.on}
+        if any(outline.lifetime == "range" for outline in active.values()):
+            active = {name: outline for name, outline in active.items() if outline.is_active(draw.frame)}
+        moments = [list(active.values())]
+        if self.shutter > 0.0 and any(outline.motion_blur for outline in active.values()):
+            moved = (roto_shapes_of(draw.settings_at(time)["shapes"]) for time in self._list_times(draw.frame))
+            moments = [
+                [at[name] if outline.motion_blur else outline for name, outline in active.items()] for at in moved
+            ]
+        return moments if any(moment != moments[0] for moment in moments) else moments[:1]
+
+    def _list_times(self, frame: int) -> list[float]:
+        """The middles of equal parts of the time in which the shutter is open, in frames."""
+        opening = self.shutter / (2.0 * math.pi)
+        start = frame + {"centered": -0.5, "start": 0.0, "end": -1.0}[self.phase] * opening
+        return [start + opening * (number + 0.5) / self.samples for number in range(self.samples)]
+
+
+def _draw_mask(draw: Draw, matte: Drawn, outlines: list[RotoShape]) -> Drawn:
+    """The mask that outlines make of another one. Neighbors without a feather are drawn together."""
+    mask, paths = matte, [_trace_path(outline, draw.size) for outline in outlines]
+    for is_soft, run in groupby(paths, lambda path: path.feather > 0.0):
+        if is_soft:
+            for path in run:
+                mask = _draw_soft(draw, mask, path)
+        else:
+            mask = _draw_coverage(draw, mask, list(run))
+    return mask
+
+
+def _draw_soft(draw: Draw, mask: Drawn, path: _Path) -> Drawn:
+    """One outline with a feather: its exact coverage says which side of the edge a pixel is on."""
+    outline = path.outline
+    nothing = draw("path_nothing", size=(1, 1), result=Field())
+    cover = _draw_coverage(draw, nothing, [path._replace(outline=RotoShape())])
+    nearest = draw_distance(draw, _list_chords(path), 0.5 * path.feather)
+    return draw.point(
+        "roto_soft", mask=mask, cover=cover, nearest=nearest, result=Field(),
+        mode=_MODES.index(outline.mode), feather=outline.feather, opacity=outline.opacity, invert=outline.invert,
+    )  # fmt: skip
 
 
 def _draw_coverage(draw: Draw, mask: Drawn, paths: list[_Path]) -> Drawn:

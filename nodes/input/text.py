@@ -19,6 +19,7 @@ from .._declare import (
     OutputSocket,
     Position,
     Prose,
+    RotoMode,
     Size,
     Slider,
     TextAlign,
@@ -65,7 +66,7 @@ _MOST_LAYERS = 4
 _NEIGHBORS = 64
 """How many letters of a layer can be near the next one: more than in a line and a half of a long text."""
 
-_LARGER = 3
+_LARGER = tuple(RotoMode).index(RotoMode.MAX)
 """The mode of a fill that keeps the larger coverage."""
 
 

@@ -24,6 +24,9 @@ float roto_matte(float matte) { return finite(matte); }
 
 vec4 roto_fill(float mask, vec4 color) { return finite(color) * mask; }
 
+// The mean over the times at which the shutter is open, one after the other.
+float roto_expose(float total, float mask, float part) { return total + mask * part; }
+
 float roto_soft(float mask, float cover, vec2 nearest, int mode, float feather, float opacity, bool invert) {
     float inside = cover >= 0.5 ? nearest.x : -nearest.x;
     return path_combine(mask, path_soften(cover, inside, feather + nearest.y), mode, opacity, invert);

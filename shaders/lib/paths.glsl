@@ -197,12 +197,19 @@ float path_area(int span, vec2 corner, float left, int segments) {
     return sum;
 }
 
-// A mask with one more shape: modes are 0 union, 1 subtract, 2 intersect, 3 the larger one.
+const int PATH_UNION = 0, PATH_SUBTRACT = 1, PATH_INTERSECT = 2, PATH_MAX = 3, PATH_MIN = 4, PATH_DIFFERENCE = 5;
+
+// A mask with one more shape; the last mode is their sum.
 float path_combine(float below, float cover, int mode, float opacity, bool invert) {
     if (invert) cover = 1.0 - cover;
-    if (mode == 3) return max(below, cover * opacity);
-    if (mode == 0) return below + cover * opacity * (1.0 - below);
-    return below * (1.0 - opacity * (mode == 1 ? cover : 1.0 - cover));
+    float amount = cover * opacity, kept = 1.0 - opacity * (1.0 - cover);
+    if (mode == PATH_UNION) return below + amount * (1.0 - below);
+    if (mode == PATH_SUBTRACT) return below * (1.0 - amount);
+    if (mode == PATH_INTERSECT) return below * kept;
+    if (mode == PATH_MAX) return max(below, amount);
+    if (mode == PATH_MIN) return min(below, kept);
+    if (mode == PATH_DIFFERENCE) return abs(below - amount);
+    return min(below + amount, 1.0);
 }
 
 // A mask with one more shape, by its mode and opacity in the table of shapes.
@@ -230,6 +237,14 @@ float path_shape(int number, ivec2 tile, int rows, int groups, int count, int se
     return min(abs(sum), 1.0);
 }
 
+// True if a mask of 0..1 becomes itself times a number, plus another one. Modes after intersect do so only with a shape
+// that counts wholly or not at all.
+bool path_is_linear(float cover, int number) {
+    float opacity = shapes_at(ivec2(1, number)).x;
+    return int(shapes_at(ivec2(0, number)).w) <= PATH_INTERSECT || opacity == 0.0 ||
+           (opacity == 1.0 && (cover == 0.0 || cover == 1.0));
+}
+
 // What all shapes do in a tile that none of their spans matters in: the mask below times x, plus y. Else z is 1.
 vec4 path_level(int groups, int count) {
     vec2 ends = vec2(0.0, 1.0);  // what the shapes make of a mask of 0 and of 1
@@ -238,6 +253,7 @@ vec4 path_level(int groups, int count) {
         for (int group = 0; group < groups; ++group)
             if (digest_at(ivec2(column * groups + group, pixel.y)) != vec4(0.0)) return vec4(0.0, 0.0, 1.0, 0.0);
         float cover = min(abs(backdrop_at(ivec2(column, pixel.y * PATH_TILE / 4)).x), 1.0);
+        if (!path_is_linear(cover, number)) return vec4(0.0, 0.0, 1.0, 0.0);
         ends = vec2(path_add(ends.x, cover, number), path_add(ends.y, cover, number));
     }
     return vec4(ends.y - ends.x, ends.x, 0.0, 0.0);

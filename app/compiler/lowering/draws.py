@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from functools import partial
 from types import MappingProxyType
-from typing import Literal
+from typing import Any, Literal
 
 from halation.nodes import (
     Affine,
@@ -92,6 +92,8 @@ class Recorder:
         self.overscan = math.ceil(settings.overscan * size[1])
         self.reads_frame = False
         """Whether the node asked for the frame."""
+        self.reads_other_times = False
+        """Whether it asked for its values at another time."""
         self.typeset, self.expand_text = resources.typeset, partial(resources.expand_text, self)
         self._owner, self._inputs, self._node, self._shader = inputs.path, inputs, node, node.shader
         self._builder, self._library, self._resources = builder, library, resources
@@ -114,6 +116,10 @@ class Recorder:
         operand = self._find_operand(socket) if frame is None else self._find_operand_at(socket, frame)
         content = operand.content if isinstance(operand, PlannedObject) else None
         return content if isinstance(content, CameraModel) else None
+
+    def settings_at(self, time: float) -> Mapping[str, Any]:
+        self.reads_frame = self.reads_other_times = True
+        return self._resources.find_settings(time)
 
     def at(self, socket: Socket, frame: int) -> Drawn:
         operand = self._find_operand_at(socket, frame)

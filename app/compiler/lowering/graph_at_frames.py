@@ -26,6 +26,7 @@ class GraphAtFrames:
         self._graph = graph
         self._is_animated = is_animated(graph)
         self._flats: dict[int, tuple[Graph, FlatGraph]] = {}
+        self._between: dict[float, FlatGraph] = {}
         self._changed: dict[int, Set[str]] = {}
         self._feeding: dict[NodeAtFrame, Mapping[str, Feed]] = {}
 
@@ -67,6 +68,14 @@ class GraphAtFrames:
     def node_at(self, path: str, frame: int) -> Node:
         """A node at a frame."""
         return self.flat_at(frame).nodes[path]
+
+    def node_between(self, path: str, time: float) -> Node:
+        """A node at a time in frames, which may lie between two of them."""
+        if not self._is_animated or time.is_integer():
+            return self.node_at(path, int(time))
+        if time not in self._between:
+            self._between[time] = expand(evaluate_at_frame(self._graph, time))
+        return self._between[time].nodes[path]
 
     def find_feeds(self, moment: NodeAtFrame) -> Mapping[str, Feed]:
         """What a node reads, by input or value. Raises GraphError for an invalid link."""

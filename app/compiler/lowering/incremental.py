@@ -129,8 +129,8 @@ class _IncrementalLowering:
     def run(self) -> LoweringRecord:
         """Replay the steps that may come out differently, in order: each one may affect those after it.
 
-        A step is replayed if it reads files, reads a frame that changed, has a changed node, or looked at an operation
-        or a constant that changed. All other steps keep their operations.
+        A step is replayed if it reads files or its values at other times, reads a frame that changed, has a changed
+        node, or looked at an operation or a constant that changed. All other steps keep their operations.
         """
         before, lowering = self.before, self.lowering
         if before.canvas is not None and lowering.pictures.canvas != before.canvas:
@@ -142,6 +142,7 @@ class _IncrementalLowering:
         for key, step in before.steps.items():
             if (
                 step.reads_resources
+                or step.reads_other_times
                 or (step.reads_frame and frame_changed)
                 or (key is not None and key[0] in changed_nodes[key[1]])
                 or not self.builder.changed.isdisjoint(step.inspected)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Any
 
 from halation.nodes import CameraModel, ColorChange, Kind, Node, Render, Scene, Size, Socket, TextBlock, TypesetText
 from msgspec import Struct, field
@@ -34,7 +35,8 @@ class NodeInputs(Struct, frozen=True):
 
 
 class NodeResources(Struct, frozen=True):
-    """What a node can read from files: pixels, color programs, meshes, the contents of a render, and text in a font."""
+    """What a node can read from files: pixels, color programs, meshes, the contents of a render, and text in a font;
+    and in its own animation: its values at another time."""
 
     read_picture: Callable[[Picture], Ref]
     write_color_program: Callable[[ColorChange], ColorProgram]
@@ -43,6 +45,7 @@ class NodeResources(Struct, frozen=True):
     read_asset: Callable[[Picture], Ref]
     typeset: Callable[[TextBlock], TypesetText]
     expand_text: Callable[[TextClock, str, Socket], str]
+    find_settings: Callable[[float], Mapping[str, Any]]
 
 
 class DrawnPicture(Struct, frozen=True):

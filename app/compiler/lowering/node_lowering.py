@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
 
 from halation.nodes import (
     MASKED,
@@ -360,18 +362,25 @@ class NodeLowering:
             size,
             self._builder,
             context.library,
-            self._pictures.collect_resources(inputs, missing),
+            self._pictures.collect_resources(inputs, missing, partial(self._find_settings, path, step)),
             self._find_memories(path, step) if remembers else {},
             context.graph.settings,
         )
         pictures = node.passes(recorder)
         step.memories = {Port(path, name): ref for name, ref in recorder.remembered.items()}
-        step.reads_frame = recorder.reads_frame
+        step.reads_frame, step.reads_other_times = recorder.reads_frame, recorder.reads_other_times
         results = pictures if isinstance(pictures, Mapping) else {next(iter(node.outputs)): pictures}
         return {
             name: item.ref if isinstance(item, DrawnPicture) else PlannedObject(content=item)
             for name, item in results.items()
         }
+
+    def _find_settings(self, path: str, step: LoweringStep, time: float) -> Mapping[str, Any]:
+        """The values of a node at a time in frames, in working units."""
+        node = self._context.frames.node_between(path, time)
+        constants.check_values(path, node)
+        reference = self._context.flat.find_reference_height(path)
+        return node.to_working_units(self._context.request.scale, step.length_height, reference).settings
 
     def _find_memories(self, path: str, step: LoweringStep) -> dict[str, Memory]:
         """What a node remembered of the frame before, by name."""

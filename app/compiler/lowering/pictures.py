@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cached_property
+from typing import Any
 
 from halation.nodes import (
     ColorChange,
@@ -114,8 +115,10 @@ class PictureBuilder:
         shape = PictureShape(probed.size, picture.width, picture.kind is not Kind.IMAGE)
         return self._builder.add(Read((shape,), owner, picture, probed.fingerprint, probed.half))
 
-    def collect_resources(self, inputs: NodeInputs, missing: Missing) -> NodeResources:
-        """The files that a node names, which lie beside the graph file that it came from."""
+    def collect_resources(
+        self, inputs: NodeInputs, missing: Missing, find_settings: Callable[[float], Mapping[str, Any]]
+    ) -> NodeResources:
+        """The files that a node names, which lie beside the graph file that it came from, and its values over time."""
 
         def locate(file: str) -> str:
             if not file:
@@ -160,7 +163,7 @@ class PictureBuilder:
             except GraphError as fault:
                 raise GraphError(f"{describe_owner(inputs.path)}: {fault}", node=inputs.path) from fault
 
-        return NodeResources(read, recolor, mesh, render, asset, typeset, expand_text)
+        return NodeResources(read, recolor, mesh, render, asset, typeset, expand_text, find_settings)
 
     def _find_source_file(self, inputs: NodeInputs, socket: str) -> str:
         """The file of the first picture that an input is made of, at this frame; "" if none comes from a file."""

@@ -55,6 +55,8 @@ class LoweringStep(Struct):
     """True if a file or a memory of an earlier frame decided what it added: these may differ the next time."""
     reads_frame: bool = False
     """True if the number of the frame decided what it added."""
+    reads_other_times: bool = False
+    """True if values of the node at other times than the frame decided what it added."""
     length_height: float = 0.0
     """The height that lengths of the node are fractions of, in pixels."""
     whole_height: float = 0.0
