@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from gui_driver import Ui
 from halation import document
@@ -62,7 +63,7 @@ def test_a_shape_is_drawn_with_the_pen(gui, path: Path) -> None:
         ui.click(at(ui, 0.1, 0.6))
         ui.settled()
         pen = ui.editor.viewer.pen
-        assert pen.find_point("roto.shapes.shape_1.points") == 2 and pen.find_point(str(POINTS)) == -1
+        assert pen.find_points("roto.shapes.shape_1.points") == {2} and not pen.find_points(str(POINTS))
         assert not pen.is_drawing and len(ui.session.history.steps) == steps + 3
         drawn = ui.session.graph.value(PORT)["shape_1"].fields["points"]
         rows = split_points(drawn)
@@ -124,5 +125,131 @@ def test_a_drag_sets_a_key_where_there_are_keys(gui, path: Path) -> None:
         assert isinstance(animation, Keys) and [key.frame for key in animation.keys] == [1, 5]
         ui.session.time.seek(3)
         assert points(ui)[0][:2] == pytest.approx((0.25, 0.25), abs=0.005)
+
+    gui(body, path)
+
+
+def add_keys(ui: Ui) -> None:
+    """Keys of the points at frames 1 and 9: the box moves by a tenth of the picture."""
+    moved = join_points([(x + 0.1, y) for x, y in BOX])
+    keys = Keys((Key(1, join_points(BOX), "linear"), Key(9, moved)))
+    ui.session.apply(AnimateValues({POINTS: keys}, "Animate"))
+    ui.settled()
+
+
+def points_at(ui: Ui, frame: int) -> np.ndarray:
+    ui.session.time.seek(frame)
+    return np.array([point[:2] for point in points(ui)])
+
+
+def select_upper_points(ui: Ui) -> None:
+    """By a lasso around the two upper corners, which are seen at .4 and .8."""
+    ui.move(at(ui, 0.3, 0.45))
+    with ui.held("Shift"):
+        ui.ctx.mouse_down(0)
+        for place in ((0.3, 0.2), (0.9, 0.2), (0.9, 0.45)):
+            ui.move(at(ui, *place))
+        ui.ctx.mouse_up(0)
+    ui.settled()
+    assert ui.editor.viewer.pen.find_points(str(POINTS)) == {0, 1}
+
+
+def test_points_in_a_lasso_are_moved_nudged_and_removed_together(gui, path: Path) -> None:
+    def body(ui: Ui) -> None:
+        steps = start(ui)
+        select_upper_points(ui)
+        ui.shot("lasso.png")
+        ui.drag(f"point 1 {POINTS}", at(ui, 0.8, 0.2))
+        assert [point[1] for point in points(ui)] == pytest.approx([0.2, 0.2, 0.7, 0.7], abs=0.006)
+        assert len(ui.session.history.steps) == steps + 1
+        before = points(ui)[0][0]
+        ui.keys("Alt+LeftArrow")
+        ui.keys("Alt+Shift+LeftArrow")
+        assert points(ui)[0][0] == pytest.approx(before - 11 / 320, abs=1e-5)
+        ui.keys("Delete")
+        assert [point[:2] for point in points(ui)] == [BOX[2], BOX[3]]
+
+    gui(body, path)
+
+
+def test_points_are_added_to_the_selection_one_by_one(gui, path: Path) -> None:
+    def body(ui: Ui) -> None:
+        start(ui)
+        for index in (0, 2, 3):
+            ui.click(f"point {index} {POINTS}", keys="Shift")
+            ui.settled()
+        assert ui.editor.viewer.pen.find_points(str(POINTS)) == {0, 2, 3}
+        ui.click(f"point 2 {POINTS}", keys="Shift")
+        ui.settled()
+        assert ui.editor.viewer.pen.find_points(str(POINTS)) == {0, 3}
+        ui.editor.actions.run("viewer.all_points")
+        assert ui.editor.viewer.pen.find_points(str(POINTS)) == {0, 1, 2, 3}
+
+    gui(body, path)
+
+
+def test_points_are_copied_from_one_frame_to_another(gui, path: Path) -> None:
+    def body(ui: Ui) -> None:
+        start(ui)
+        add_keys(ui)
+        select_upper_points(ui)
+        ui.editor.actions.run("viewer.copy_points")
+        ui.session.time.seek(9)
+        ui.settled()
+        ui.editor.actions.run("viewer.paste_points")
+        np.testing.assert_allclose(points_at(ui, 9), [*BOX[:2], (0.8, 0.7), (0.4, 0.7)])
+        np.testing.assert_allclose(points_at(ui, 1), BOX)
+
+    gui(body, path)
+
+
+def test_ripple_moves_points_at_all_keys(gui, path: Path) -> None:
+    def body(ui: Ui) -> None:
+        start(ui)
+        add_keys(ui)
+        ui.editor.actions.run("viewer.ripple")
+        ui.drag(f"point 0 {POINTS}", at(ui, 0.3, 0.2))
+        assert points_at(ui, 1)[0] == pytest.approx((0.2, 0.2), abs=0.005)
+        assert points_at(ui, 9)[0] == pytest.approx((0.3, 0.2), abs=0.005)
+        np.testing.assert_allclose(points_at(ui, 9)[1:], [(x + 0.1, y) for x, y in BOX[1:]])
+        ui.keys("Ctrl+Z")
+        assert points_at(ui, 9)[0] == pytest.approx((0.4, 0.3))
+
+    gui(body, path)
+
+
+def test_a_point_is_inserted_and_removed_at_all_keys(gui, path: Path) -> None:
+    """Else shapes of two keys would have another number of points, and nothing could lie between them."""
+
+    def body(ui: Ui) -> None:
+        start(ui)
+        add_keys(ui)
+        ui.double_click(at(ui, 0.6, 0.3))
+        ui.settled()
+        animation = ui.session.graph.animation[POINTS]
+        assert isinstance(animation, Keys)
+        assert [len(split_points(key.value)) for key in animation.keys] == [5, 5]
+        assert points_at(ui, 5)[1] == pytest.approx((0.55, 0.3), abs=0.005)
+        ui.session.time.seek(1)
+        ui.keys("Delete")
+        np.testing.assert_allclose(points_at(ui, 5), [(x + 0.05, y) for x, y in BOX])
+
+    gui(body, path)
+
+
+def test_the_feather_of_a_point_is_dragged(gui, path: Path) -> None:
+    def body(ui: Ui) -> None:
+        start(ui)
+        ui.click(f"point 0 {POINTS}")
+        ui.settled()
+        ui.shot("feather.png")
+        grip = ui.editor.places[f"feather {POINTS}"]
+        x, y = (grip[0] + grip[2]) / 2, (grip[1] + grip[3]) / 2
+        away = 0.1 * (at(ui, 0.0, 1.0)[1] - at(ui, 0.0, 0.0)[1]) / 2**0.5
+        ui.drag((x, y), (x - away, y - away))  # a corner at the left top: outside is there
+        assert points(ui)[0][6] == pytest.approx(0.2, abs=0.01)
+        assert points(ui)[0][:6] == (*BOX[0], 0.0, 0.0, 0.0, 0.0)
+        ui.drag(f"feather {POINTS}", (x, y))
+        assert points(ui)[0][6] == pytest.approx(0.0, abs=0.01)
 
     gui(body, path)

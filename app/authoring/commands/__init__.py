@@ -36,6 +36,7 @@ from .settings import (
     SetPreroll,
     SetReferenceHeight,
 )
+from .splines import ChangePoints, MovePoints, SplineEdit
 from .values import (
     ConvertLength,
     DescribeControl,
@@ -68,6 +69,7 @@ __all__ = [
     "ArrangeElements",
     "AssignViewer",
     "BakeKeys",
+    "ChangePoints",
     "Connect",
     "ConnectNodes",
     "ConvertLength",
@@ -98,6 +100,7 @@ __all__ = [
     "MakeGroupLocal",
     "MoveElements",
     "MoveLink",
+    "MovePoints",
     "PasteText",
     "PlaceElement",
     "RemoveDot",
@@ -130,6 +133,7 @@ __all__ = [
     "SetValue",
     "SetValues",
     "SpliceChain",
+    "SplineEdit",
     "SwapInputs",
     "ToggleCollapse",
     "ToggleKey",

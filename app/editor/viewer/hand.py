@@ -15,7 +15,7 @@ from .holding import HandleTarget, MouseHold, aim
 from .lights import add_light, can_add, make_merge_token, place_light, turn_spot
 from .orbit import Orbit, move_camera, scene_at
 from .painting import cancel_stroke
-from .splines import insert_on_curve
+from .spline_edits import insert_on_curve
 
 if TYPE_CHECKING:
     from .context import ViewerContext

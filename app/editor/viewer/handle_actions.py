@@ -9,7 +9,7 @@ from .focus import find_focus_port, pick_focus
 from .lights import can_remove, remove_chosen_light
 from .orbit import frame_scene
 from .painting import can_paint, paints, scale_brush, toggle_brush
-from .splines import can_draw, can_remove_point, remove_point, toggle_pen
+from .spline_edits import can_draw, can_remove_points, remove_points, toggle_pen
 
 if TYPE_CHECKING:
     from .context import ViewerContext
@@ -33,8 +33,8 @@ def _toggle_gizmos(context: ViewerContext) -> None:
 
 
 def _remove_chosen(context: ViewerContext) -> None:
-    if can_remove_point(context):
-        remove_point(context)
+    if can_remove_points(context):
+        remove_points(context)
     else:
         remove_chosen_light(context)
 
@@ -97,8 +97,9 @@ HANDLES: tuple[Action[ViewerContext], ...] = (
         can_draw,
         lambda context: context.viewer.pen.is_drawing,
         doc="Click on the picture to set corners of a new shape of the selected node, drag to set smooth points, and "
-        "click the first point to close it. Afterwards points and tangents can be dragged; Alt pulls tangents out of a "
-        "point, or moves one tangent alone. A double click on the line adds a point.",
+        "click the first point to close it. Afterwards points, tangents and feathers can be dragged; Alt pulls "
+        "tangents out of a point, or moves one tangent alone. A double click on the line adds a point. Drag with Shift "
+        "around points to select them.",
     ),
     Action(
         "viewer.paint",
@@ -139,8 +140,8 @@ HANDLES: tuple[Action[ViewerContext], ...] = (
         "Viewer/Handles",
         "Delete",
         "viewer",
-        lambda context: can_remove_point(context) or can_remove(context),
-        doc="Remove the selected light of the selected node, or the selected point of its shape. A double click on the "
-        "picture adds a light, one on a line of a shape a point.",
+        lambda context: can_remove_points(context) or can_remove(context),
+        doc="Remove the selected light of the selected node, or the selected points of its shape. A double click on "
+        "the picture adds a light, one on a line of a shape a point.",
     ),
 )

@@ -19,7 +19,17 @@ from .mattes import click, picks
 from .orbit import Orbit, aspect_of, move_camera, scene_at
 from .painting import begin_stroke, extend_stroke, finish_stroke, make_stroke_token, paints
 from .snapping import Snapping
-from .splines import SplineTarget, aim_pen, can_draw, find_pen, find_spline, lift_pen, move_part, select_point
+from .spline_edits import (
+    aim_pen,
+    begin_move,
+    can_draw,
+    drag_feather,
+    find_pen,
+    lift_pen,
+    move_part,
+    select_in_lasso,
+)
+from .splines import SplineTarget, find_chosen, find_spline
 
 if TYPE_CHECKING:
     from .context import ViewerContext
@@ -43,6 +53,8 @@ HoldKind = Literal[
     "pick",
     "matte",
     "spline",
+    "add point",
+    "lasso",
     "pen",
     "paint",
     "brush size",
@@ -105,7 +117,7 @@ def aim(
     if grip_target := find_grip(list_gizmos(context, sight, scale), sight, at, scale):
         return HandleTarget("handle", gizmo=grip_target[0], part=grip_target[1].part)
     if spline_target := find_spline(context, sight, at, scale):
-        return HandleTarget("spline", spline=spline_target)
+        return HandleTarget("add point" if shift and spline_target.part == "point" else "spline", spline=spline_target)
     if light_target := _light(context, sight, at, scale, alt, shift):
         return light_target
     if viewer.compare == "wipe" and sight.under(at):
@@ -118,6 +130,8 @@ def aim(
             return HandleTarget("region", grip)
     if viewer.orbits or (alt and viewer.scene):
         return HandleTarget("track" if shift else "orbit")
+    if shift and find_chosen(context):
+        return HandleTarget("lasso")
     return HandleTarget("matte" if picks(context) else "pan")
 
 
@@ -174,8 +188,7 @@ class MouseHold:
             grip = next(grip.at for grip in aim.gizmo.grips if grip.part == aim.part)
             held_point = grip[0] / sight.picture[0], grip[1] / sight.picture[1]
         if aim.spline is not None:
-            context.items[str(aim.spline.outline.port)] = aim.spline.outline.name
-            select_point(context, aim.spline.outline, aim.spline.index if aim.spline.part != "curve" else -1)
+            begin_move(context, aim.spline, adds=aim.kind == "add point")
         if aim.kind == "pen" and aim.part == "new":
             aim_pen(context, (x, y), None)
         if aim.kind == "paint":
@@ -229,8 +242,10 @@ class MouseHold:
                 self._move_grip(sight, (x + self.offset[0], y + self.offset[1]), is_free, is_constrained)
             case _ if self.aim.lamp is not None and self.moved:
                 self._move_light(sight, at, (x + self.offset[0], y + self.offset[1]))
-            case "spline" if self.moved and self.aim.spline and self.aim.spline.part != "curve":
-                move_part(self.context, self.aim.spline, (x, y), is_broken=is_broken, pulls_tangents=is_broken)
+            case "spline" | "add point" if self.moved and self.aim.spline:
+                self._move_spline(self.aim.spline, sight, at, is_broken)
+            case "lasso":
+                viewer.pen.lasso.append((x, y))
             case "pen" if self.moved and self.aim.part == "new":
                 aim_pen(self.context, begun, (x, y))
             case "paint":
@@ -265,6 +280,8 @@ class MouseHold:
             finish_stroke(self.context, sight)
         elif self.token:
             self.context.session.seal()
+        elif self.aim.kind == "lasso":
+            select_in_lasso(self.context)
         elif self.aim.kind == "pen" and self.aim.part == "new":
             lift_pen(self.context)
         elif self.aim.kind == "pen":
@@ -289,6 +306,14 @@ class MouseHold:
         if self.aim.kind == "paint":
             return make_stroke_token(self.context)
         return make_merge_token(self.aim.lamp) if self.aim.lamp else "orbit" if self.orbit else ""
+
+    def _move_spline(self, target: SplineTarget, sight: Sight, at: Point, is_broken: bool) -> None:
+        if target.part == "feather":
+            drag_feather(self.context, target, sight, at, self.scale)
+        elif target.part != "curve":
+            (x, y), begun = sight.fraction(at), sight.fraction(self.start)
+            by = x - begun[0], y - begun[1]
+            move_part(self.context, target, by, (x, y), is_broken=is_broken, pulls_tangents=is_broken)
 
     def _move_light(self, sight: Sight, at: Point, to: Point) -> None:
         lamp = self.aim.lamp

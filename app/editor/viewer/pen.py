@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Set
+from dataclasses import dataclass, field
 
 from halation.nodes import Row
+
+from .geometry import Point
+
+_NONE: tuple[str, Set[int]] = ("", frozenset())
 
 
 @dataclass
@@ -17,16 +22,22 @@ class SplinePen:
     """The points that grow with each click, as `node.value.shape.points`; "" before the first one."""
     pending: Row | None = None
     """The point that is set when the mouse button is released."""
-    selection: tuple[str, int] = ("", -1)
-    """The selected point: the points as `node.value.shape.points`, and its number."""
+    selection: tuple[str, Set[int]] = _NONE
+    """The selected points: those of a shape as `node.value.shape.points`, and their numbers."""
+    lasso: list[Point] = field(default_factory=list[Point])
+    """The line that is drawn around points, as fractions of the picture."""
+    ripples: bool = False
+    """True if an edit of points at a frame is made at all of their keys."""
+    copied: Mapping[int, Row] = field(default_factory=dict[int, Row])
+    """The points that were copied, by their numbers."""
 
     def begin(self) -> None:
         """Start a new shape."""
-        self.is_drawing, self.shape, self.pending, self.selection = True, "", None, ("", -1)
+        self.is_drawing, self.shape, self.pending, self.selection = True, "", None, _NONE
 
-    def find_point(self, points: str) -> int:
-        """The number of the selected point among these points; -1 if it is one of another shape."""
-        return self.selection[1] if self.selection[0] == points else -1
+    def find_points(self, points: str) -> Set[int]:
+        """The numbers of the selected points among these; none if those of another shape are selected."""
+        return self.selection[1] if self.selection[0] == points else frozenset()
 
     def end(self) -> None:
         """Stop drawing; the shape stays as it is."""

@@ -10,7 +10,8 @@ from ...language.translation import translate
 from ..theme.style import u32, ui_scale
 from .geometry import Point, Sight
 from .grips import draw_grip, is_near
-from .splines import SplineOutline, find_drawn, find_selected, list_outlines, list_tangents
+from .spline_edits import find_drawn
+from .splines import SplineOutline, find_selected, list_outlines, list_tangents, place_feather
 from .strokes import BLACK, CHOSEN, SHADE, WHITE, around, draw_label, draw_path
 
 if TYPE_CHECKING:
@@ -26,6 +27,8 @@ def draw_splines(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) 
             draw_path(lines, [sight.place(place) for place in outline.trace_curve(index)], color)
         if outline.chosen:
             _draw_points(context, lines, sight, outline, (mouse.x, mouse.y))
+    if len(pen.lasso) > 1:
+        draw_path(lines, [sight.place(place) for place in (*pen.lasso, pen.lasso[0])], CHOSEN, 1.0)
     if pen.pending is not None:
         outline = find_drawn(context)
         places = [
@@ -49,18 +52,18 @@ def _describe_pen(context: ViewerContext) -> str:
 def _draw_points(
     context: ViewerContext, lines: imgui.ImDrawList, sight: Sight, outline: SplineOutline, mouse: Point
 ) -> None:
-    """Draw the points of the selected shape, and the tangents of the selected point."""
+    """Draw the points of the selected shape; tangents and feather of a point that is the only selected one."""
     selected, scale = find_selected(context, outline), ui_scale()
-    if selected >= 0:
-        middle = sight.place(outline.places[selected])
-        for part, place in list_tangents(outline, selected):
-            at = sight.place(place)
-            draw_path(lines, [middle, at], WHITE, 1.0)
-            draw_grip(lines, at, "turn", is_lit=is_near(at, mouse))
-            context.places[f"tangent {part} {outline.points_port}"] = around(at, 5.0 * scale)
+    if len(selected) == 1:
+        ends = {f"tangent {part}": sight.place(place) for part, place in list_tangents(outline, *selected)}
+        ends["feather"] = place_feather(outline, sight, *selected, scale)
+        for name, at in ends.items():
+            draw_path(lines, [sight.place(outline.places[selected[0]]), at], WHITE, 1.0)
+            draw_grip(lines, at, "size" if name == "feather" else "turn", is_lit=is_near(at, mouse))
+            context.places[f"{name} {outline.points_port}"] = around(at, 5.0 * scale)
     for index, place in enumerate(outline.places):
         at, size = sight.place(place), 3.5 * scale
-        color = CHOSEN if index == selected or is_near(at, mouse) else WHITE
+        color = CHOSEN if index in selected or is_near(at, mouse) else WHITE
         for grown, ink in ((1.5 * scale, u32(BLACK, SHADE)), (0.0, u32(color))):
             reach = size + grown
             lines.add_rect_filled((at[0] - reach, at[1] - reach), (at[0] + reach, at[1] + reach), ink)

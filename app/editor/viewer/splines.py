@@ -7,6 +7,7 @@ in the file stay those of the shape before it is moved.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
@@ -17,16 +18,12 @@ from halation.nodes import (
     RotoShape,
     Row,
     curve_point,
-    insert_point,
-    join_points,
     list_curves,
     split_points,
 )
 
-from ...authoring.commands import AddItem, SetValues
 from ...graph import Port
 from ...graph.named_items import join_path
-from ...language.translation import mark, translate
 from ..fields.item_facts import choose_item
 from .geometry import Point, Sight
 from .item_lists import find_item_list
@@ -34,14 +31,18 @@ from .item_lists import find_item_list
 if TYPE_CHECKING:
     from .context import ViewerContext
 
-SplinePart = Literal["point", "in", "out", "curve", "new", "close"]
-"""What is under the mouse: a point, the end of a tangent, a curve, or with the pen a new point or the first one."""
+SplinePart = Literal["point", "in", "out", "feather", "curve", "new", "close"]
+"""What is under the mouse: a point, the end of a tangent, the grip of a feather, a curve, or with the pen a new
+point or the first one."""
 
 STEPS = 24
 """The lines that a curve is drawn with: on a curve of 400 pixels they are a third of a pixel from it."""
 
-_REACH = 9.0
+REACH = 9.0
 """The distance at which a point is hit, in pixels at UI scale 1: as that of other grips."""
+
+FEATHER_ARM = 22.0
+"""How far from its point the grip of a feather of 0 is: clear of the point."""
 
 _NEAR_CURVE = 5.0
 """The distance at which a curve is hit."""
@@ -133,12 +134,14 @@ def find_spline(context: ViewerContext, sight: Sight, at: Point, scale: float) -
     outlines = list_outlines(context)
     for outline in reversed(outlines):
         selected = find_selected(context, outline)
-        if outline.chosen and selected >= 0:
-            for part, place in list_tangents(outline, selected):
-                if math.dist(at, sight.place(place)) <= _REACH * scale:
-                    return SplineTarget(outline, part, selected)
+        if outline.chosen and len(selected) == 1:
+            for part, place in list_tangents(outline, *selected):
+                if math.dist(at, sight.place(place)) <= REACH * scale:
+                    return SplineTarget(outline, part, *selected)
+            if math.dist(at, place_feather(outline, sight, *selected, scale)) <= REACH * scale:
+                return SplineTarget(outline, "feather", *selected)
         for index, place in enumerate(outline.places if outline.chosen else ()):
-            if math.dist(at, sight.place(place)) <= _REACH * scale:
+            if math.dist(at, sight.place(place)) <= REACH * scale:
                 return SplineTarget(outline, "point", index)
     curves = (_find_curve(outline, sight, at, _NEAR_CURVE * scale) for outline in reversed(outlines))
     return next((target for target in curves if target), None)
@@ -149,6 +152,31 @@ def list_tangents(outline: SplineOutline, index: int) -> list[tuple[Literal["in"
     x, y, *arms = outline.points[index][:6]
     ends: list[tuple[Literal["in", "out"], Point]] = [("in", (arms[0], arms[1])), ("out", (arms[2], arms[3]))]
     return [(part, outline.to_picture((x + arm[0], y + arm[1]))) for part, arm in ends if arm != (0.0, 0.0)]
+
+
+def find_normal(outline: SplineOutline, sight: Sight, index: int) -> Point:
+    """The direction on the screen that leads out of a shape at a point."""
+    count = len(outline.points)
+    before = sight.place(outline.trace_curve((index - 1) % count)[-2])
+    after = sight.place(outline.trace_curve(index)[1])
+    across, down = after[0] - before[0], after[1] - before[1]
+    length = math.hypot(across, down) or 1.0
+    corners = [sight.place(place) for place in outline.places]
+    area = sum(a[0] * b[1] - b[0] * a[1] for a, b in pairwise([*corners, corners[0]]))
+    outward = -1.0 if area < 0.0 else 1.0
+    return outward * down / length, -outward * across / length
+
+
+def place_feather(outline: SplineOutline, sight: Sight, index: int, scale: float) -> Point:
+    """Where on the screen the grip of a point's feather is: at the outer end of the soft edge, and a little farther."""
+    (x, y), (across, down) = sight.place(outline.places[index]), find_normal(outline, sight, index)
+    away = FEATHER_ARM * scale + 0.5 * outline.points[index][6] * measure_height(sight)
+    return x + across * away, y + down * away
+
+
+def measure_height(sight: Sight) -> float:
+    """How high the picture is on the screen."""
+    return sight.picture[1] * sight.zoom / sight.density
 
 
 def _find_curve(outline: SplineOutline, sight: Sight, at: Point, reach: float) -> SplineTarget | None:
@@ -171,142 +199,17 @@ def _measure_segment(at: Point, start: Point, end: Point) -> tuple[float, float]
     return math.dist(at, (start[0] + along * dx, start[1] + along * dy)), along
 
 
-def find_selected(context: ViewerContext, outline: SplineOutline) -> int:
-    """The number of the selected point of an outline; -1 if none is."""
-    number = context.viewer.pen.find_point(str(outline.points_port))
-    return number if number < len(outline.points) else -1
+def find_selected(context: ViewerContext, outline: SplineOutline) -> list[int]:
+    """The numbers of the selected points of an outline, in order."""
+    numbers = context.viewer.pen.find_points(str(outline.points_port))
+    return sorted(number for number in numbers if number < len(outline.points))
 
 
-def select_point(context: ViewerContext, outline: SplineOutline, number: int) -> None:
-    """Select a point of an outline; none for -1."""
-    context.viewer.pen.selection = str(outline.points_port), number
+def select_points(context: ViewerContext, outline: SplineOutline, numbers: Iterable[int]) -> None:
+    """Select points of an outline."""
+    context.viewer.pen.selection = str(outline.points_port), frozenset(numbers)
 
 
-# --- edits ---------------------------------------------------------------------------------------------------------
-
-
-def move_part(
-    context: ViewerContext, target: SplineTarget, to: Point, *, is_broken: bool, pulls_tangents: bool
-) -> None:
-    """Move a point, with its tangents, or the end of a tangent, to a fraction of the picture.
-
-    The other tangent follows as a mirror image of a smooth point, unless it `is_broken`. A point that
-    `pulls_tangents` stays, and gets tangents to both sides.
-    """
-    place = target.outline.from_picture(to)
-    if place is None:
-        return
-    point = target.outline.points[target.index]
-    x, y = round(place[0] - point[0], 6), round(place[1] - point[1], 6)
-    if target.part == "point" and not pulls_tangents:
-        changed = (*place, *point[2:])
-    elif target.part == "in":
-        changed = (*point[:2], x, y, *(point[4:6] if is_broken else (-x, -y)), point[6])
-    else:
-        changed = (*point[:2], *(point[2:4] if is_broken and target.part == "out" else (-x, -y)), x, y, point[6])
-    points = [*target.outline.points]
-    points[target.index] = changed
-    context.interface.dragging = True
-    _set_points(context, target.outline, points, mark("Move a point of {shape}"), merge=target.outline.token)
-
-
-def insert_on_curve(context: ViewerContext, target: SplineTarget) -> None:
-    """Insert a point on a curve, which keeps its form."""
-    points = insert_point(target.outline.points, target.index, target.t)
-    _set_points(context, target.outline, [_round(point) for point in points], mark("Insert a point in {shape}"))
-    select_point(context, target.outline, target.index + 1)
-
-
-def can_remove_point(context: ViewerContext) -> bool:
-    """True if a point of a shape is selected that has others."""
-    outline = next(iter(reversed(list_outlines(context))), None)
-    return outline is not None and find_selected(context, outline) >= 0 and len(outline.points) > 1
-
-
-def remove_point(context: ViewerContext) -> None:
-    """Remove the selected point of the selected shape."""
-    outline = list_outlines(context)[-1]
-    index = find_selected(context, outline)
-    points = [point for number, point in enumerate(outline.points) if number != index]
-    _set_points(context, outline, points, mark("Remove a point of {shape}"))
-    select_point(context, outline, -1)
-
-
-def _set_points(context: ViewerContext, outline: SplineOutline, points: list[Row], label: str, merge: str = "") -> None:
-    """Set the points of a shape, or those of the key at this frame."""
-    command = SetValues({outline.points_port: join_points(points)}, translate(label, shape=outline.name), merge=merge)
-    context.log.attempt(lambda: context.session.apply(command))
-
-
-def _round(point: Row) -> Row:
-    return tuple(round(part, 6) for part in point)
-
-
-# --- the pen -------------------------------------------------------------------------------------------------------
-
-
-def can_draw(context: ViewerContext) -> bool:
-    """True if the active node holds splines."""
-    return find_list(context) is not None
-
-
-def toggle_pen(context: ViewerContext) -> None:
-    """Start to draw a new shape, or stop."""
-    pen = context.viewer.pen
-    if pen.is_drawing:
-        pen.end()
-    else:
-        pen.begin()
-
-
-def find_pen(context: ViewerContext, sight: Sight, at: Point, scale: float) -> SplinePart:
-    """What a press of the pen does: close the shape at its first point, or add a point."""
-    outline = find_drawn(context)
-    if outline is None or len(outline.points) < 2:
-        return "new"
-    first = sight.place(outline.places[0])
-    return "close" if math.dist(at, first) <= _REACH * scale else "new"
-
-
-def find_drawn(context: ViewerContext) -> SplineOutline | None:
-    """The shape that the pen draws."""
-    return next(
-        (outline for outline in list_outlines(context) if str(outline.points_port) == context.viewer.pen.shape), None
-    )
-
-
-def aim_pen(context: ViewerContext, start: Point, to: Point | None) -> None:
-    """Keep the point that the pen sets when it is lifted: a corner, or with a drag a point with tangents."""
-    outline = find_drawn(context)
-    places = (outline.from_picture(place) if outline else place for place in (start, to or start))
-    place, end = places
-    if place is None or end is None:
-        return
-    x, y = end[0] - place[0], end[1] - place[1]
-    context.viewer.pen.pending = _round((*place, -x, -y, x, y, 0.0))
-
-
-def lift_pen(context: ViewerContext) -> None:
-    """Add the pending point to the shape, or a new shape with it: one step of undo for each point."""
-    pen, port = context.viewer.pen, find_list(context)
-    point, pen.pending = pen.pending, None
-    if point is None or port is None:
-        return
-    outline = find_drawn(context)
-    if outline is not None:
-        _set_points(context, outline, [*outline.points, point], mark("Add a point to {shape}"))
-        select_point(context, outline, len(outline.points))
-        return
-
-    def add() -> None:
-        name = context.session.apply(AddItem(port, "spline", {"points": point}, f"shape_{_count(context) + 1}"))
-        context.items[str(port)], pen.shape = name, f"{port}.{name}.points"
-        pen.selection = pen.shape, 0
-
-    context.log.attempt(add)
-
-
-def _count(context: ViewerContext) -> int:
-    """The highest number of a name such as `shape_3`."""
-    numbers = (outline.name.removeprefix("shape_") for outline in list_outlines(context))
-    return max((int(number) for number in numbers if number.isdecimal()), default=0)
+def find_chosen(context: ViewerContext) -> SplineOutline | None:
+    """The selected shape of the active node."""
+    return next((outline for outline in list_outlines(context) if outline.chosen), None)

@@ -33,6 +33,7 @@ from ..tutorials.context import TutorialContext
 from ..viewer.actions import VIEWER
 from ..viewer.context import ViewerContext
 from ..viewer.handle_actions import HANDLES
+from ..viewer.spline_actions import SPLINE_ACTIONS
 from ..workflows.code_files import CODE, CodeFileWorkflow
 from ..workflows.documents import DOCUMENTS, DocumentWorkflow
 from ..workflows.flipbook import FLIPBOOK, FlipbookPlayer
@@ -112,6 +113,7 @@ def bind_actions(editor: Editor, contexts: Contexts) -> None:
     bind(VIEWER, contexts.viewer)
     bind(FLIPBOOK, contexts.flipbooks)
     bind(HANDLES, contexts.viewer)
+    bind(SPLINE_ACTIONS, contexts.viewer)
     bind(PLAYBACK, contexts.timeline)
     bind(ANIMATION, contexts.curves)
     bind(TUTORIALS, contexts.tutorials)

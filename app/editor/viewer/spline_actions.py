@@ -1,0 +1,107 @@
+"""Actions of the points of splines in the viewer."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from ...language.translation import mark
+from ..shared.action import Action
+from .spline_edits import (
+    can_draw,
+    can_paste_points,
+    copy_points,
+    has_selected_points,
+    nudge_points,
+    paste_points,
+    select_all_points,
+    toggle_ripple,
+)
+from .splines import find_chosen
+
+if TYPE_CHECKING:
+    from .context import ViewerContext
+    from .geometry import Point
+
+_FAR = 10.0
+"""Pixels of a nudge with Shift: ten times the usual one, as in other programs."""
+
+_NUDGES: tuple[tuple[str, str, str, Point], ...] = (
+    ("left", mark("Nudge Points Left"), "LeftArrow", (-1.0, 0.0)),
+    ("right", mark("Nudge Points Right"), "RightArrow", (1.0, 0.0)),
+    ("up", mark("Nudge Points Up"), "UpArrow", (0.0, -1.0)),
+    ("down", mark("Nudge Points Down"), "DownArrow", (0.0, 1.0)),
+)
+
+
+def _has_shape(context: ViewerContext) -> bool:
+    return find_chosen(context) is not None
+
+
+def _list_nudges() -> tuple[Action[ViewerContext], ...]:
+    """Four directions, by a pixel and by ten."""
+    return tuple(
+        Action(
+            f"viewer.nudge_{name}{suffix}",
+            label,
+            partial(nudge_points, by=(way[0] * pixels, way[1] * pixels)),
+            "",
+            f"{keys}+{key}",
+            "viewer",
+            has_selected_points,
+            doc=doc,
+            repeats=True,
+        )
+        for keys, suffix, pixels, doc in (
+            ("Alt", "", 1.0, mark("Move the selected points of the selected shape by a pixel.")),
+            ("Alt+Shift", "_far", _FAR, mark("Move the selected points of the selected shape by ten pixels.")),
+        )
+        for name, label, key, way in _NUDGES
+    )
+
+
+SPLINE_ACTIONS: tuple[Action[ViewerContext], ...] = (
+    Action(
+        "viewer.all_points",
+        "Select All Points",
+        select_all_points,
+        "Viewer/Shapes",
+        "Ctrl+A",
+        "viewer",
+        _has_shape,
+        doc="Select all points of the selected shape. Drag with Shift around some to select these; click with Shift to "
+        "add one.",
+    ),
+    Action(
+        "viewer.copy_points",
+        "Copy Points",
+        copy_points,
+        "Viewer/Shapes",
+        "Ctrl+C",
+        "viewer",
+        _has_shape,
+        doc="Copy the selected points of the selected shape, or all of them, as they are at this frame.",
+    ),
+    Action(
+        "viewer.paste_points",
+        "Paste Points",
+        paste_points,
+        "Viewer/Shapes",
+        "Ctrl+V",
+        "viewer",
+        can_paste_points,
+        doc="Set the copied points at this frame. Where points have keys, this sets a key.",
+    ),
+    Action(
+        "viewer.ripple",
+        "Ripple Edit",
+        toggle_ripple,
+        "Viewer/Shapes",
+        "Alt+R",
+        "viewer",
+        can_draw,
+        lambda context: context.viewer.pen.ripples,
+        doc="Edit points at all of their keys: what is added at this frame is added to each of them.",
+    ),
+    *_list_nudges(),
+)
