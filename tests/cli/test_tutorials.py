@@ -46,6 +46,13 @@ def test_each_job_of_the_page_how_to(tmp_path: Path) -> None:
     assert len(list((tmp_path / "graded").iterdir())) == 4
 
 
+@pytest.mark.nightly  # fifteen commands: 12 s of processor time
+def test_a_whole_shot(tmp_path: Path) -> None:
+    follow_page("tutorial-shot.md", tmp_path)
+    for name in ("matte.png", "look.png", "second.png", "master/slate.png", "dailies/shot.0003.jpg"):
+        assert (tmp_path / name).stat().st_size > 1000, name
+
+
 @pytest.mark.nightly  # twenty-four commands: 15 s of processor time
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems bring OpenGL")
 def test_each_symptom_of_the_page_troubleshooting(tmp_path: Path) -> None:
