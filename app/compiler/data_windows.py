@@ -82,8 +82,9 @@ def add_extents(program: LoweredProgram, passes: Sequence[PassGroup], whole: Set
 
 def _find_data_windows(program: LoweredProgram, overscan: float, whole: Set[str]) -> MappingProxyType[Ref, Region]:
     """The data windows that are not the frame. All pictures of an operation have the same."""
-    ending = _find_ending(program, whole)
-    known = _Pictures(program, windows := dict[Ref, Region](), boundless := set[int]())
+    tables = _find_tables(program)
+    ending = _find_ending(program, whole) | tables
+    known = _Pictures(program, windows := dict[Ref, Region](), boundless := set[int](), tables)
     for index, op in enumerate(program.ops):
         if index in ending or op.size == (1, 1):
             continue
@@ -99,11 +100,15 @@ def _find_data_windows(program: LoweredProgram, overscan: float, whole: Set[str]
 
 
 class _Pictures(Struct, frozen=True):
-    """The data windows that were found so far; operations in `boundless` have pixels wherever they are asked for."""
+    """The data windows that were found so far; operations in `boundless` have pixels wherever they are asked for.
+
+    What is drawn from `tables` alone, such as a mask from the points of its outline, has too.
+    """
 
     program: LoweredProgram
     windows: Mapping[Ref, Region]
     boundless: Set[int]
+    tables: Set[int]
 
     def find_size(self, ref: Ref) -> Size:
         return self.program.shape(ref).size
@@ -113,7 +118,22 @@ class _Pictures(Struct, frozen=True):
 
     def is_bounded(self, ref: Ref) -> bool:
         """False for numbers and other generated pictures, which end nowhere."""
-        return self.find_size(ref) != (1, 1) and ref.op not in self.boundless
+        return self.find_size(ref) != (1, 1) and ref.op not in self.boundless and ref.op not in self.tables
+
+
+def _find_tables(program: LoweredProgram) -> set[int]:
+    """The operations that make numbers for others, not pictures: from numbers alone, and read anywhere by all."""
+    numbers, looked_at = set[int](), {ref.op for ref in program.outputs.values()}
+    for index, op in enumerate(program.ops):
+        refs = {ref for ref in op.reads() if program.shape(ref).size != (1, 1)}
+        if isinstance(op, Read):
+            is_number = op.picture.pixels is not None
+        else:
+            is_number = isinstance(op, Gather) and bool(refs) and all(ref.op in numbers for ref in refs)
+        if is_number:
+            numbers.add(index)
+        looked_at |= {ref.op for ref in refs if not op.reads_whole(ref, program.shape(ref).size)}
+    return numbers - looked_at
 
 
 def _find_ending(program: LoweredProgram, whole: Set[str]) -> set[int]:

@@ -5,9 +5,9 @@ at a few segments only, however many there are.
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
-from .._declare import Draw, Drawn, Field, Vector
+from .._declare import Draw, Drawn, Field, Size, Vector
 
 TILE = 16
 """Pixels of a side of a tile. Chosen by judgement: smaller ones need larger tables, larger ones hold more spans."""
@@ -22,6 +22,21 @@ BLOCK = 16
 
 PathMode = int
 """How an outline changes the mask below: a place in the list of `RotoMode`."""
+
+
+class TileGrid(NamedTuple):
+    """The tiles of a picture with those beyond its frame."""
+
+    size: Size
+    beyond: int
+    """How many tiles there are on each side of the frame."""
+
+    @classmethod
+    def of(cls, draw: Draw) -> Self:
+        """The tiles of what a node may draw."""
+        beyond = -(-draw.overscan // TILE)
+        across, down = (-(-side // TILE) + 2 * beyond for side in draw.size)
+        return cls((across, down), beyond)
 
 
 class PathFill(NamedTuple):
@@ -49,8 +64,8 @@ def draw_coverage(draw: Draw, mask: Drawn, fills: Sequence[PathFill], spans: Dra
     `spans` has a texel for each span, whose fourth number is the span that follows; `points` has the eight points at
     which the segments of each span start.
     """
-    width, height = draw.size
-    across, down, count = -(-width // TILE), -(-height // TILE), len(fills)
+    grid, count = TileGrid.of(draw), len(fills)
+    across, down = grid.size
     channels, blocks = sum(fill.channel_count for fill in fills), count_blocks(fills)
     rows, groups = -(-channels // 16), max(-(-fill.channel_count // (4 * BITS)) for fill in fills)
     shapes, owners = draw.table(_pack_fills(fills), 2), draw.table(_pack_channels(fills), BLOCK)
@@ -59,7 +74,7 @@ def draw_coverage(draw: Draw, mask: Drawn, fills: Sequence[PathFill], spans: Dra
     hulls = draw("path_hulls", owners=owners, boxes=boxes, size=owners.size, result=four)
     words = draw(
         "path_words", spans=spans, points=points, boxes=boxes, hulls=hulls, owners=owners,
-        size=(4 * across, rows * down), result=four, rows=rows, channels=channels,
+        size=(4 * across, rows * down), result=four, rows=rows, channels=channels, beyond=grid.beyond,
     )  # fmt: skip
     digest = draw(
         "path_digest", words=words, shapes=shapes, size=(across * count * groups, down), result=four,
@@ -67,8 +82,8 @@ def draw_coverage(draw: Draw, mask: Drawn, fills: Sequence[PathFill], spans: Dra
     )  # fmt: skip
     steps = draw(
         "path_crossings", spans=spans, points=points, shapes=shapes, boxes=boxes, words=words, digest=digest,
-        size=(across * count, -(-height // 4)), result=four,
-        rows=rows, groups=groups, count=count,
+        size=(across * count, TILE // 4 * down), result=four,
+        rows=rows, groups=groups, count=count, beyond=grid.beyond,
     )  # fmt: skip
     backdrop = draw("path_backdrop", steps=steps, size=steps.size, result=four, count=count)
     levels = draw(
@@ -79,7 +94,7 @@ def draw_coverage(draw: Draw, mask: Drawn, fills: Sequence[PathFill], spans: Dra
         "path_cover", mask=mask, spans=spans, points=points, shapes=shapes, boxes=boxes, words=words, digest=digest,
         backdrop=backdrop, levels=levels,
         overlap={"mask": 0}, result=Field(), rows=rows, groups=groups, count=count,
-        segments=SEGMENTS,
+        segments=SEGMENTS, beyond=grid.beyond,
     )  # fmt: skip
 
 
@@ -88,18 +103,19 @@ def draw_distance(draw: Draw, chords: tuple[float, ...], reach: float) -> Drawn:
 
     A chord is two texels: its ends, then the feather at its start and its end.
     """
-    across, down = -(-draw.size[0] // TILE), -(-draw.size[1] // TILE)
+    grid = TileGrid.of(draw)
+    across, down = grid.size
     count, channels = len(chords) // 8, -(-len(chords) // (8 * BITS))
     rows, groups = -(-channels // 16), -(-channels // (4 * BITS))
     table, four = draw.table(chords, 2 * BLOCK), Vector(width=4)
     hulls = draw("path_chord_hulls", chords=table, size=(BLOCK, -(-channels // BLOCK)), result=four, chord_count=count)
     nearest = draw(
         "path_nearest", chords=table, hulls=hulls, size=(across, down), result=Field(),
-        chord_count=count, channels=channels,
+        chord_count=count, channels=channels, beyond=grid.beyond,
     )  # fmt: skip
     words = draw(
         "path_chord_words", chords=table, hulls=hulls, nearest=nearest, size=(4 * across, rows * down), result=four,
-        rows=rows, channels=channels, chord_count=count, reach=reach,
+        rows=rows, channels=channels, chord_count=count, reach=reach, beyond=grid.beyond,
     )  # fmt: skip
     shape = draw.table((0.0, channels, count, 0.0), 1)
     digest = draw(
@@ -108,7 +124,7 @@ def draw_distance(draw: Draw, chords: tuple[float, ...], reach: float) -> Drawn:
     )  # fmt: skip
     return draw(
         "path_distance", chords=table, words=words, digest=digest, overlap={}, result=Vector(width=2),
-        rows=rows, groups=groups, parts=-(-channels // BITS), reach=reach,
+        rows=rows, groups=groups, parts=-(-channels // BITS), reach=reach, beyond=grid.beyond,
     )  # fmt: skip
 
 

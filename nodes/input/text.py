@@ -185,7 +185,8 @@ class Text(Filter):
             self.leading, self.align, self.direction, self.wrap_width / size,
         )  # fmt: skip
         typeset = draw.typeset(block)
-        letters = list(_trace_letters(typeset, self._place(typeset, draw.size), draw.size, self._margin))
+        margin = self._margin + draw.overscan
+        letters = list(_trace_letters(typeset, self._place(typeset, draw.size), draw.size, margin))
         cover = _draw_letters(draw, letters)
         body = _draw_stroke(draw, cover, letters, self.outline_width) if self.outline_width > 0.0 else cover
         picture = draw.point("text_below", self.image)

@@ -53,38 +53,44 @@ float path_apart(vec4 box, vec2 place) {
     return dot(apart, apart);
 }
 
+// Tiles are counted from the left top one, which lies `beyond` tiles outside of the frame, as far as pictures go on.
+ivec2 path_tile(ivec2 place, int beyond) { return (place + beyond * PATH_TILE) / PATH_TILE; }
+// The left top pixel of a tile.
+ivec2 path_corner(ivec2 tile, int beyond) { return (tile - beyond) * PATH_TILE; }
+
 // --- tiles ---------------------------------------------------------------------------------------------------------
 
 // True if a box reaches into a tile. What lies left of the picture counts for the tiles at its left edge.
-bool path_touches(vec4 box, ivec2 tile) {
-    vec2 low = vec2(tile * PATH_TILE), high = low + float(PATH_TILE);
+bool path_touches(vec4 box, ivec2 tile, int beyond) {
+    vec2 low = vec2(path_corner(tile, beyond)), high = low + float(PATH_TILE);
     if (tile.x == 0) low.x = -PATH_FAR;
     return all(lessThanEqual(box.xy, high)) && all(greaterThanEqual(box.zw, low));
 }
 
 // True if a segment of a span can lie in a tile.
-bool path_crosses(int span, vec4 box, ivec2 tile) {
-    if (!path_touches(box, tile)) return false;
+bool path_crosses(int span, vec4 box, ivec2 tile, int beyond) {
+    if (!path_touches(box, tile, beyond)) return false;
     vec2 start = points_at(path_point_cell(span, 0)).xy;
     for (int number = 1; number <= PATH_SEGMENTS; ++number) {
         vec2 end = path_end(span, number).xy;
-        if (path_touches(vec4(min(start, end) - PATH_ROUNDING, max(start, end) + PATH_ROUNDING), tile)) return true;
+        vec4 part = vec4(min(start, end) - PATH_ROUNDING, max(start, end) + PATH_ROUNDING);
+        if (path_touches(part, tile, beyond)) return true;
         start = end;
     }
     return false;
 }
 
 // The spans that cross a tile: bit b of channel c of the tile's texel k stands for span 24 (4 k + c) + b.
-vec4 path_words(int rows, int channels) {
+vec4 path_words(int rows, int channels, int beyond) {
     ivec2 tile = ivec2(pixel.x / 4, pixel.y / rows);
     int first = 4 * ((pixel.y % rows) * 4 + pixel.x % 4);
     vec4 result = vec4(0.0);
     for (int c = 0; c < 4 && first + c < channels; ++c) {
-        if (!path_touches(hulls_at(path_cell(first + c)), tile)) continue;
+        if (!path_touches(hulls_at(path_cell(first + c)), tile, beyond)) continue;
         uint bits = 0u;
         for (int b = 0; b < int(owners_at(path_cell(first + c)).y); ++b) {
             int span = (first + c) * PATH_BITS + b;
-            if (path_crosses(span, boxes_at(path_cell(span)), tile)) bits |= 1u << b;
+            if (path_crosses(span, boxes_at(path_cell(span)), tile, beyond)) bits |= 1u << b;
         }
         result[c] = float(bits);
     }
@@ -138,7 +144,7 @@ float path_share(PathPart part, float limit) {
 }
 
 // Where a tile starts; the first one holds what lies left of the picture.
-float path_left(int tile) { return tile == 0 ? -PATH_FAR : float(tile * PATH_TILE); }
+float path_left(int tile, int beyond) { return tile == 0 ? -PATH_FAR : float((tile - beyond) * PATH_TILE); }
 
 // How far down the segments of a span go between two places, in each of four rows.
 vec4 path_descent(int span, float top, float left, float right) {
@@ -157,10 +163,11 @@ vec4 path_descent(int span, float top, float left, float right) {
 }
 
 // How far down the segments of a shape go within a tile, in each of four rows.
-vec4 path_crossings(int rows, int groups, int count) {
+vec4 path_crossings(int rows, int groups, int count, int beyond) {
     ivec2 tile = ivec2(pixel.x / count, 4 * pixel.y / PATH_TILE);
     vec4 shape = shapes_at(ivec2(0, pixel.x % count)), sum = vec4(0.0);
-    float left = path_left(tile.x), right = path_left(tile.x + 1), top = float(4 * pixel.y);
+    float left = path_left(tile.x, beyond), right = path_left(tile.x + 1, beyond);
+    float top = float(4 * pixel.y - beyond * PATH_TILE);
     int column = (tile.x * count + pixel.x % count) * groups;
     for (int part = 0; part < (int(shape.y) + PATH_BITS - 1) / PATH_BITS; ++part)
         for (uint used = path_used(column, tile.y, part); used != 0u; used &= used - 1u) {
@@ -219,12 +226,13 @@ float path_add(float below, float cover, int number) {
 }
 
 // The coverage of a shape in a pixel.
-float path_shape(int number, ivec2 tile, int rows, int groups, int count, int segments) {
+float path_shape(int number, ivec2 tile, int rows, int groups, int count, int segments, int beyond) {
     vec2 corner = vec2(pixel);
-    float left = path_left(tile.x);
+    float left = path_left(tile.x, beyond);
     vec4 shape = shapes_at(ivec2(0, number));
     int column = tile.x * count + number;
-    float sum = backdrop_at(ivec2(column, pixel.y >> 2))[pixel.y & 3];
+    int row = pixel.y + beyond * PATH_TILE;
+    float sum = backdrop_at(ivec2(column, row >> 2))[row & 3];
     for (int part = 0; part < (int(shape.y) + PATH_BITS - 1) / PATH_BITS; ++part)
         for (uint used = path_used(column * groups, tile.y, part); used != 0u; used &= used - 1u) {
             int channel = int(shape.x) + part * PATH_BITS + findLSB(used);
@@ -260,13 +268,13 @@ vec4 path_level(int groups, int count) {
 }
 
 // The mask with the coverage of all shapes in a pixel; tiles that no edge crosses have one level.
-float path_cover(int rows, int groups, int count, int segments) {
-    ivec2 tile = pixel / PATH_TILE;
+float path_cover(int rows, int groups, int count, int segments, int beyond) {
+    ivec2 tile = path_tile(pixel, beyond);
     float covered = mask_at(pixel);
     vec4 level = levels_at(tile);
     if (level.z == 0.0) return covered * level.x + level.y;
     for (int number = 0; number < count; ++number)
-        covered = path_add(covered, path_shape(number, tile, rows, groups, count, segments), number);
+        covered = path_add(covered, path_shape(number, tile, rows, groups, count, segments, beyond), number);
     return covered;
 }
 
@@ -298,11 +306,11 @@ vec4 path_chord_hulls(int chord_count) {
 }
 
 // The middle of a tile, in pixels.
-vec2 path_middle(ivec2 tile) { return (vec2(tile) + 0.5) * float(PATH_TILE); }
+vec2 path_middle(ivec2 tile, int beyond) { return vec2(path_corner(tile, beyond)) + 0.5 * float(PATH_TILE); }
 
 // The distance from the middle of a tile to the nearest chord.
-float path_nearest(int chord_count, int channels) {
-    vec2 middle = path_middle(pixel);
+float path_nearest(int chord_count, int channels, int beyond) {
+    vec2 middle = path_middle(pixel, beyond);
     float square = PATH_FAR;
     for (int channel = 0; channel < channels; ++channel) {
         if (path_apart(hulls_at(path_cell(channel)), middle) >= square) continue;
@@ -315,10 +323,10 @@ float path_nearest(int chord_count, int channels) {
 
 // The chords that can be nearest to a pixel of a tile: no farther from its middle than the nearest one and twice the
 // way to its corners.
-vec4 path_chord_words(int rows, int channels, int chord_count, float reach) {
+vec4 path_chord_words(int rows, int channels, int chord_count, float reach, int beyond) {
     ivec2 tile = ivec2(pixel.x / 4, pixel.y / rows);
     int first = 4 * ((pixel.y % rows) * 4 + pixel.x % 4);
-    vec2 middle = path_middle(tile);
+    vec2 middle = path_middle(tile, beyond);
     float limit = min(nearest_at(tile) + 2.0 * PATH_RADIUS, reach + PATH_RADIUS);
     vec4 result = vec4(0.0);
     for (int c = 0; c < 4 && first + c < channels; ++c) {
@@ -332,8 +340,8 @@ vec4 path_chord_words(int rows, int channels, int chord_count, float reach) {
 }
 
 // The distance to the nearest chord, as far as it is within reach, and the feather there.
-vec2 path_distance(int rows, int groups, int parts, float reach) {
-    ivec2 tile = pixel / PATH_TILE;
+vec2 path_distance(int rows, int groups, int parts, float reach, int beyond) {
+    ivec2 tile = path_tile(pixel, beyond);
     vec2 place = vec2(pixel) + 0.5;
     vec3 nearest = vec3(reach * reach, -1.0, 0.0);
     for (int part = 0; part < parts; ++part)

@@ -61,16 +61,15 @@ from ..ir import (
     Parameter,
     PictureShape,
     PlannedObject,
-    Raster,
     Reduce,
     Ref,
     UniformConstant,
 )
 from ..library import Library
-from ..raster import CHANNELS
 from . import constants, formulas, fourier, gaussian, padding, transforms
 from .blurs import BlurBuilder
 from .node_inputs import DrawnPicture, NodeInputs, NodeResources
+from .rasters import add_raster
 from .tables import make_table
 
 
@@ -255,12 +254,9 @@ class Recorder:
         if len(weights) % 2 == 0 or len(weights) > MAX_TAPS:
             fault = f"a convolution takes an odd number of weights up to {MAX_TAPS}, not {len(weights)}"
             raise ShaderError(self._owner, f"nodes/{self._shader}.py", 1, fault)
-        axis_index = 0 if axis == "x" else 1
-        origin = -(len(weights) // 2)
-        return self._wrap(
-            self._blurs.convolve(picture.ref, axis_index, weights, 1, origin, edge, picture.size[axis_index]),
-            picture.is_narrow,
-        )
+        index, origin = 0 if axis == "x" else 1, -(len(weights) // 2)
+        blurred = self._blurs.convolve(picture.ref, index, weights, 1, origin, edge, picture.size[index])
+        return self._wrap(blurred, picture.is_narrow)
 
     def convolve_2d(self, image: Pixels, kernel: Pixels) -> Drawn:
         picture, kernel_picture = self._find_pixels(image), self._find_pixels(kernel)
@@ -289,12 +285,8 @@ class Recorder:
         cameras: tuple[CameraModel, CameraModel, CameraModel],
         near: float,
     ) -> Mapping[str, Drawn]:
-        shapes = tuple(PictureShape(self.size, channels, data) for channels, data, _ in CHANNELS.values())
-        camera_rows = tuple(part for camera in cameras for part in camera.rows)
-        motion_rows = tuple(part for motion in motions for part in motion)
-        op = Raster(shapes, self._owner, self._resources.load_mesh(scene), camera_rows, motion_rows, near)
-        first = self._builder.add(op)
-        return {name: DrawnPicture(Ref(first.op, at), shapes[at]) for at, name in enumerate(CHANNELS)}
+        mesh = self._resources.load_mesh(scene)
+        return add_raster(self._builder, self._owner, self.size, mesh, motions, cameras, near)
 
     def reduce(self, image: Pixels, operation: Literal["sum", "max"]) -> Drawn:
         picture = self._find_pixels(image)

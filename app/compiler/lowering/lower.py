@@ -21,9 +21,10 @@ from ..ir import Builder, LoweredProgram, Operand, Ref, UniformConstant
 from ..library import Library
 from ..request import Request
 from . import constants
+from .context import LoweringContext
 from .graph_at_frames import GraphAtFrames
 from .node_inputs import takes_field
-from .node_lowering import LoweringContext, NodeLowering
+from .node_lowering import NodeLowering
 from .pictures import PictureBuilder
 from .steps import LoweringRecord, LoweringStep, PortAtOffset, StepKey, WatchedProvider, field_port
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import Any
 
 from halation.nodes import (
     MASKED,
@@ -24,22 +23,18 @@ from halation.nodes import (
     ramp_knots,
     unit_factor,
 )
-from msgspec import Struct
 from msgspec.structs import replace
 
 from ...errors import GraphError, ShaderError
-from ...graph import Graph, Port
-from ..ir import Builder, Call, Choice, Memory, Operand, Parameter, PictureShape, PlannedObject, Ref, UniformConstant
-from ..library import Library
-from ..request import Request
+from ...graph import Port
+from ..ir import Call, Choice, Memory, Operand, Parameter, PictureShape, PlannedObject, Ref, UniformConstant
 from . import constants, masks
+from .context import LoweringContext, PointwiseForm, find_settings
 from .draws import Recorder
-from .expand import FlatGraph, find_stand_in
-from .graph_at_frames import GraphAtFrames
+from .expand import find_stand_in
 from .node_inputs import DrawnPicture, NodeInputs, find_cameras, takes_field
-from .pictures import PictureBuilder
 from .pixel_shapes import follow_pixel_aspect
-from .steps import LoweringStep, StepKey, field_port
+from .steps import LoweringStep, field_port
 
 OperandFinder = Callable[[Port, int, bool], Operand | None]
 """What a source port stands for at a frame; None for a graph input without a picture. With True its Field, if the port
@@ -47,32 +42,6 @@ carries one besides its Image."""
 
 READS_PLACE = frozenset({"pixel", "extent"})
 """The GLSL variables from which a function knows the position of its pixel."""
-
-
-class LoweringContext(Struct, frozen=True):
-    """What all nodes of a graph are lowered with. `frame` is the one that is rendered."""
-
-    graph: Graph
-    request: Request
-    library: Library
-    frame: int
-    frames: GraphAtFrames
-    builder: Builder
-    flat: FlatGraph
-    pictures: PictureBuilder
-    whole_heights: Mapping[StepKey, float]
-    """Heights of the pictures that results were cut out of."""
-
-
-class PointwiseForm(Struct, frozen=True):
-    """What all pointwise nodes of a class have in common whose outputs have one size.
-
-    `arguments` are those of the GLSL function: the name, the GLSL type, and the value, or None for an input.
-    """
-
-    arguments: tuple[tuple[str, str, Value | None], ...]
-    shapes: tuple[PictureShape, ...]
-    choices: tuple[tuple[str, tuple[str, ...]], ...]
 
 
 class NodeLowering:
@@ -362,7 +331,7 @@ class NodeLowering:
             size,
             self._builder,
             context.library,
-            self._pictures.collect_resources(inputs, missing, partial(self._find_settings, path, step)),
+            self._pictures.collect_resources(inputs, missing, partial(find_settings, context, path, step)),
             self._find_memories(path, step) if remembers else {},
             context.graph.settings,
         )
@@ -374,13 +343,6 @@ class NodeLowering:
             name: item.ref if isinstance(item, DrawnPicture) else PlannedObject(content=item)
             for name, item in results.items()
         }
-
-    def _find_settings(self, path: str, step: LoweringStep, time: float) -> Mapping[str, Any]:
-        """The values of a node at a time in frames, in working units."""
-        node = self._context.frames.node_between(path, time)
-        constants.check_values(path, node)
-        reference = self._context.flat.find_reference_height(path)
-        return node.to_working_units(self._context.request.scale, step.length_height, reference).settings
 
     def _find_memories(self, path: str, step: LoweringStep) -> dict[str, Memory]:
         """What a node remembered of the frame before, by name."""
