@@ -9,7 +9,6 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from exr_files import create_output
-from halation.errors import DeviceError
 from halation.graph import Graph, Input, Output, Port, Settings
 from halation.nodes import CurvePair, Filter, Kind, catalogue, name_curve_pairs
 from halation.renderer import Renderer, RenderRequest, open_device
@@ -212,16 +211,6 @@ def test_an_edited_graph_is_planned_as_a_new_one(renderer) -> None:
         graph = chain(move(x, 0.0), NODES["exposure"](stops=1.0), move(-x, 0.0))
         made = renderer.render(graph, RenderRequest({"picture": picture}))["out"]
         np.testing.assert_array_equal(made[..., :3], 2.0 * picture[..., :3])
-
-
-def test_what_does_not_fit_is_refused_with_a_sentence(renderer) -> None:
-    graph = chain(AWAY, NODES["exposure"](stops=1.0), BACK)
-    device = open_device(sandbox=UNRESTRICTED, memory=60_000)
-    small = Renderer(device, sandbox=UNRESTRICTED)
-    with pytest.raises(DeviceError, match="with overscan they cannot be made in parts") as fault:
-        small.render(graph, RenderRequest({"picture": make_picture()}))
-    assert fault.value.node in ("n0", "n1") and f"makes {WIDTH + 13}x{HEIGHT + 10} pixels" in str(fault.value)
-    small.close()
 
 
 def render_files(renderer: Renderer, graph: Graph, *paths: Path) -> None:

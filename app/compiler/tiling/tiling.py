@@ -24,6 +24,7 @@ from ..library import Library
 from ..plan import Plan, texture_bytes
 from ..scheduling.schedule import count_peak_bytes, schedule
 from ..target import Precision, Target
+from .refusals import check_extents, check_whole_pictures, count_pixels, format_size
 from .regions import find_regions
 from .tiles import TileStage, Tiling
 
@@ -71,20 +72,15 @@ def plan_tiling(
         return None
     if program.windows:
         raise DeviceError(f"{why}: choose a smaller region")
-    if program.extents:
-        largest = max(program.extents, key=lambda ref: _count_pixels(program.extents[ref].size))
-        owner, (width, height) = program.ops[largest.op].owner, program.extents[largest].size
-        made = f"{describe_owner(owner)} makes {width}x{height} pixels with those beyond the frame"
-        remedy = "render smaller with --scale or --size, give more with --memory, or set a smaller overscan"
-        raise DeviceError(f"{why}, and with overscan they cannot be made in parts: {made}; {remedy}", node=owner)
     for ref in texels:
-        if _count_pixels(program.shape(ref).size) > MAX_PIXELS:
+        if count_pixels(program.shape(ref).size) > MAX_PIXELS:
             raise DeviceError(
                 f"{why}, and too many to be made in parts; render smaller with --scale or --size",
                 node=program.ops[ref.op].owner,
             )
-    _check_whole_pictures(program, passes, target)
+    check_whole_pictures(program, passes, target)
     work = _StagePlanner(program, passes, texels, target, by_rows)
+    check_extents(program, work.whole_refs, why)
     before, last = work.plan_before(), work.plan_last()
     # What an output was rounded to as a part of the whole, it is rounded to in a tile.
     rounded = frozenset(name for name in halves if texels[program.outputs[name]].endswith("16f"))
@@ -113,7 +109,7 @@ def _find_excess(
         size, owner = program.size_on_device(ref), program.ops[ref.op].owner
         if max(size) > target.max_size:
             return (
-                f"{describe_owner(owner)}: {_format_size(size)} pixels is more than the {target.max_size} that "
+                f"{describe_owner(owner)}: {format_size(size)} pixels is more than the {target.max_size} that "
                 f"{target.name_in_sentences} can hold on a side"
             )
     if not target.memory:
@@ -146,34 +142,6 @@ def _count_bytes(program: LoweredProgram, texels: Mapping[Ref, str], ref: Ref) -
     return texture_bytes(program.extent(ref).size, texels[ref])
 
 
-def _check_whole_pictures(program: LoweredProgram, passes: Sequence[PassGroup], target: Target) -> None:
-    """Raise DeviceError for a picture that must be whole and does not fit, and for nodes with memories."""
-    for fused in passes:
-        for op in (program.ops[index] for index in fused.members):
-            refs = [
-                ref for ref in fused.reads if ref in set(op.reads()) and op.reads_whole(ref, program.shape(ref).size)
-            ]
-            sizes = [program.shape(ref).size for ref in refs] + ([op.size] if op.is_indivisible else [])
-            for size in sizes:
-                if max(size) > target.max_size:
-                    raise DeviceError(
-                        f"{describe_owner(op.owner)}: it may need all {_format_size(size)} pixels of a picture for one "
-                        f"of its own, so they cannot be made in parts, and {target.name_in_sentences} holds "
-                        f"{target.max_size} on a side; render smaller with --scale or --size",
-                        node=op.owner,
-                    )
-    for port in program.memories:
-        raise DeviceError(
-            f"node '{port.node}': what it remembers of a frame must fit into memory as a whole; render smaller with "
-            "--scale or --size, or give more with --memory",
-            node=port.node,
-        )
-
-
-def _format_size(size: Size) -> str:
-    return f"{size[0]}x{size[1]}"
-
-
 class _StagePlanner:
     """Finds the stages of a program."""
 
@@ -187,7 +155,7 @@ class _StagePlanner:
     ) -> None:
         self.program, self.passes, self.texels, self.target = program, passes, texels, target
         self.makers = {ref: fused for fused in passes for ref in fused.writes}
-        self.largest = max(_count_pixels(program.shape(ref).size) for ref in texels)
+        self.largest = max(count_pixels(program.shape(ref).size) for ref in texels)
         self.whole_passes = tuple(fused for fused in passes if self._is_made_whole(fused))
         self.whole_refs = {ref for fused in self.whole_passes for ref in fused.writes}
         self.by_rows = frozenset(name for name in by_rows if program.outputs[name] not in self.whole_refs)
@@ -214,7 +182,8 @@ class _StagePlanner:
         """True for a pass whose pictures are made whole before others read them."""
         if any(op.is_made_first for op in self._find_ops(fused)):
             return True
-        if self._is_small(fused.writes[0]) and self._is_light(fused) and not self._stays_small(fused):
+        ends = self.program.extents.keys().isdisjoint(fused.writes)
+        if self._is_small(fused.writes[0]) and ends and self._is_light(fused) and not self._stays_small(fused):
             return True
         return any(
             op.reads_whole(ref, self.program.shape(ref).size) and self.program.shape(ref).size != (1, 1)
@@ -225,7 +194,7 @@ class _StagePlanner:
         )
 
     def _is_small(self, ref: Ref) -> bool:
-        return SMALL_FRACTION * _count_pixels(self.program.shape(ref).size) <= self.largest
+        return SMALL_FRACTION * count_pixels(self.program.shape(ref).size) <= self.largest
 
     def _is_light(self, fused: PassGroup) -> bool:
         """True for a pass whose pictures take an eighth of the allowed memory at most. Chosen by judgement."""
@@ -267,8 +236,8 @@ class _StagePlanner:
             within = f"within {format_bytes(memory)} its" if memory else "its"
             more = "give more with --memory, or render" if memory else "render"
             raise DeviceError(
-                f"{describe_owner(owner)}: {within} {_format_size(size)} pixels can only be made in tiles of "
-                f"{_format_size(tile)}, which takes too long; {more} smaller with --scale or --size",
+                f"{describe_owner(owner)}: {within} {format_size(size)} pixels can only be made in tiles of "
+                f"{format_size(tile)}, which takes too long; {more} smaller with --scale or --size",
                 node=owner,
             )
         tiles = _split_into_tiles(size, tile)
@@ -359,10 +328,6 @@ class _StagePlanner:
         )
 
 
-def _count_pixels(size: Size) -> int:
-    return size[0] * size[1]
-
-
 def _split_into_tiles(size: Size, tile: Size) -> tuple[Region, ...]:
     """Tiles that cover a picture, row by row."""
     return tuple(
@@ -391,9 +356,7 @@ def _select_parts(
     program: LoweredProgram, windows_by_tile: Sequence[Mapping[Ref, Region]]
 ) -> tuple[Mapping[Ref, Region], ...]:
     """The regions of all pictures that are not whole, for every tile."""
-    parts = {
-        ref for windows in windows_by_tile for ref, region in windows.items() if region.size != program.shape(ref).size
-    }
+    parts = {ref for windows in windows_by_tile for ref, region in windows.items() if region != program.extent(ref)}
     return tuple(
         MappingProxyType({ref: windows[ref] for ref in windows if ref in parts}) for windows in windows_by_tile
     )

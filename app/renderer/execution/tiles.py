@@ -198,7 +198,8 @@ class _PictureCache:
             return upload
         everything = upload.whole
         window = window or everything
-        rows = window.down if self._by_rows and picture.by_rows else everything.down
+        in_parts = self._by_rows and picture.by_rows and not picture.overscan
+        rows = window.down if in_parts else everything.down
         (first, end), pixels = self._decoded.get(picture, ((0, 0), None))
         if pixels is None or not first <= rows[0] <= rows[1] <= end:
             pixels = None
