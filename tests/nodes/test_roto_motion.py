@@ -6,11 +6,12 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from halation.graph import Graph, Key, Keys, Output, Port
-from halation.nodes import Kind, RotoShape, join_points, make_ellipse, name_roto_shapes
+from halation.graph import Expression, Graph, Key, Keys, Output, Port
+from halation.nodes import Kind, RotoShape, catalogue, join_points, make_ellipse, name_roto_shapes
 from halation.nodes.input.roto import Roto
 from halation.renderer import Renderer, RenderRequest
 
+NODES = catalogue()
 WIDTH, HEIGHT = 60, 20
 POSITION = Port("roto", "shapes.box.position")
 BOX = join_points([(0.25, 0.25), (0.5, 0.25), (0.5, 0.75), (0.25, 0.75)])
@@ -114,3 +115,30 @@ def test_two_shapes_that_share_an_edge_leave_no_seam_with_plus(run):
     )
     mask = run(Roto(shapes=name_roto_shapes(a=first, b=second)), size=(100, 50), output="mask")[..., 0]
     np.testing.assert_allclose(mask[25, 12:88], 1.0, atol=1e-5)
+
+
+def test_a_shape_follows_a_transform_by_expressions(run):
+    """As if the transform moved the mask; keys of the transform blur it as its own would."""
+    size = (96, 64)
+    points = make_ellipse(0.4, 0.5, 0.3, 0.4)
+    moved = {"position": (9.0, -6.0), "rotation": 25.0, "scale": (1.2, 0.8)}
+    graph = Graph().add("move", NODES["transform"](**moved)).add_output("mask", Output(Kind.FIELD))
+
+    def draw(shape: RotoShape, **animation: str) -> np.ndarray:
+        drawn = graph.add("roto", Roto(shapes=name_roto_shapes(box=shape)))
+        drawn = drawn.connect(Port("roto", "mask"), Port("outputs", "mask"))
+        for name, text in animation.items():
+            drawn = drawn.animate(Port("roto", f"shapes.box.{name}"), Expression(text))
+        return run(drawn, size=size)[..., 0]
+
+    follows = draw(
+        RotoShape(points=points),
+        position="[move.position.x / 96, move.position.y / 64]",
+        rotation="move.rotation",
+        scale="[move.scale.x, move.scale.y]",
+    )
+    placed = draw(RotoShape(points=points, **{**moved, "position": (9.0 / 96, -6.0 / 64)}))
+    np.testing.assert_allclose(follows, placed, atol=1e-6)
+    still = draw(RotoShape(points=points))
+    transformed = run(NODES["transform"](**moved, kernel="catmull-rom"), {"image": np.dstack([still] * 4)})[..., 0]
+    assert np.abs(follows - transformed).mean() < 2e-3 and np.abs(follows - transformed).max() < 0.25
