@@ -184,6 +184,9 @@ def test_points_are_added_to_the_selection_one_by_one(gui, path: Path) -> None:
         assert ui.editor.viewer.pen.find_points(str(POINTS)) == {0, 3}
         ui.editor.actions.run("viewer.all_points")
         assert ui.editor.viewer.pen.find_points(str(POINTS)) == {0, 1, 2, 3}
+        ui.click(f"point 1 {POINTS}")
+        ui.settled()
+        assert ui.editor.viewer.pen.find_points(str(POINTS)) == {1}
 
     gui(body, path)
 

@@ -27,6 +27,7 @@ from .spline_edits import (
     find_pen,
     lift_pen,
     move_part,
+    select_alone,
     select_in_lasso,
 )
 from .splines import SplineTarget, find_chosen, find_spline
@@ -276,6 +277,8 @@ class MouseHold:
         if self.deferred is not None:
             self._apply(self.deferred)
             viewer.deferred = None
+        if self.aim.kind == "spline" and self.aim.spline and not self.moved:
+            select_alone(self.context, self.aim.spline)
         if self.aim.kind == "paint":
             finish_stroke(self.context, sight)
         elif self.token:

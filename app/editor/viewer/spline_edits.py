@@ -46,6 +46,12 @@ def begin_move(context: ViewerContext, target: SplineTarget, *, adds: bool) -> N
     select_points(context, outline, selected)
 
 
+def select_alone(context: ViewerContext, target: SplineTarget) -> None:
+    """Select a point that was clicked, and no others."""
+    if target.part == "point":
+        select_points(context, target.outline, (target.index,))
+
+
 def move_part(
     context: ViewerContext, target: SplineTarget, by: Point, to: Point, *, is_broken: bool, pulls_tangents: bool
 ) -> None:

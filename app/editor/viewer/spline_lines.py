@@ -55,10 +55,11 @@ def _draw_points(
     """Draw the points of the selected shape; tangents and feather of a point that is the only selected one."""
     selected, scale = find_selected(context, outline), ui_scale()
     if len(selected) == 1:
-        ends = {f"tangent {part}": sight.place(place) for part, place in list_tangents(outline, *selected)}
-        ends["feather"] = place_feather(outline, sight, *selected, scale)
+        (number,) = selected
+        ends = {f"tangent {part}": sight.place(place) for part, place in list_tangents(outline, number)}
+        ends["feather"] = place_feather(outline, sight, number, scale)
         for name, at in ends.items():
-            draw_path(lines, [sight.place(outline.places[selected[0]]), at], WHITE, 1.0)
+            draw_path(lines, [sight.place(outline.places[number]), at], WHITE, 1.0)
             draw_grip(lines, at, "size" if name == "feather" else "turn", is_lit=is_near(at, mouse))
             context.places[f"{name} {outline.points_port}"] = around(at, 5.0 * scale)
     for index, place in enumerate(outline.places):

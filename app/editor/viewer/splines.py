@@ -135,11 +135,12 @@ def find_spline(context: ViewerContext, sight: Sight, at: Point, scale: float) -
     for outline in reversed(outlines):
         selected = find_selected(context, outline)
         if outline.chosen and len(selected) == 1:
-            for part, place in list_tangents(outline, *selected):
+            (number,) = selected
+            for part, place in list_tangents(outline, number):
                 if math.dist(at, sight.place(place)) <= REACH * scale:
-                    return SplineTarget(outline, part, *selected)
-            if math.dist(at, place_feather(outline, sight, *selected, scale)) <= REACH * scale:
-                return SplineTarget(outline, "feather", *selected)
+                    return SplineTarget(outline, part, number)
+            if math.dist(at, place_feather(outline, sight, number, scale)) <= REACH * scale:
+                return SplineTarget(outline, "feather", number)
         for index, place in enumerate(outline.places if outline.chosen else ()):
             if math.dist(at, sight.place(place)) <= REACH * scale:
                 return SplineTarget(outline, "point", index)
