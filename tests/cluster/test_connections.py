@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 import time
 
 import pytest
@@ -19,6 +20,8 @@ from farms import (
     start_scheduler,
     wait_for_frames,
 )
+from halation.cluster import connection
+from halation.errors import RenderError
 
 pytest.importorskip("distributed", reason="Dask is not installed")
 
@@ -45,6 +48,34 @@ def restart_scheduler(farm):
     time.sleep(0.5)
     farm.scheduler = start_scheduler(farm.folder, int(farm.address.rpartition(":")[2]))
     farm.start_worker(**farm.slow)
+
+
+class BreakingClient:
+    """Stands in for a client of Dask whose connection breaks while it is opened, as often as it says."""
+
+    left = 0
+
+    def __init__(self, *_, **__):
+        if BreakingClient.left:
+            BreakingClient.left -= 1
+            raise AssertionError  # what Dask says where the first words of a scheduler are no greeting
+
+    def close(self, timeout):
+        pass
+
+
+def test_a_connection_that_breaks_while_it_is_opened_is_tried_again(monkeypatch):
+    monkeypatch.setattr("distributed.Client", BreakingClient)
+    monkeypatch.setattr(connection, "_RETRY_INTERVAL", 0.0)
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        address = f"tcp://127.0.0.1:{listener.getsockname()[1]}"
+        BreakingClient.left = 3
+        with connection.open_client(address) as client:
+            assert isinstance(client, BreakingClient) and not BreakingClient.left
+        BreakingClient.left = 1
+        monkeypatch.setattr(connection, "CONNECT_SECONDS", 0.0)
+        with pytest.raises(RenderError, match="no scheduler answers there: start one"), connection.open_client(address):
+            pass
 
 
 def test_a_job_goes_on_when_its_scheduler_is_started_again(halation, shot, slow_farm):
