@@ -75,6 +75,7 @@ class ChildRunner:
         item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
         return True
 
+    @pytest.hookimpl(trylast=True)
     def pytest_sessionfinish(self) -> None:
         """End the last child, with what its tests share."""
         if self._child:

@@ -21,6 +21,7 @@ from pathlib import Path
 
 
 def main(count: int, words: list[str]) -> None:
+    os.environ["OPENBLAS_NUM_THREADS"] = "1"
     import numpy  # noqa: F401
     import OpenImageIO as oiio
     from halation import document, media  # noqa: F401
@@ -30,6 +31,7 @@ def main(count: int, words: list[str]) -> None:
     folder = Path(words[words.index("-o") + 1]).parent
 
     def start(work: Callable[[], int]) -> int:
+        assert sys.platform != "linux" or len([*Path("/proc/self/task").iterdir()]) == 1, "a fork would lose a thread"
         child = os.fork()
         if child == 0:
             try:
