@@ -73,7 +73,7 @@ def test_what_is_not_in_the_file_is_refused(shared, shape, offset):
         shared.read_array("float32", shape, offset)
 
 
-@pytest.mark.skipif(os.name == "nt", reason="permissions of POSIX")
+@pytest.mark.skipif(os.name == "nt", reason="POSIX permissions")
 def test_the_file_is_private_and_removed():
     with make_array_file() as array_file:
         assert array_file is not None
