@@ -30,7 +30,16 @@ from halation.resources.sandbox import UNRESTRICTED
 Array = np.ndarray
 
 PRESETS = {path.stem: path for path in paths()}
-SMOOTH = ("film_halation", "light_painting", "vintage_photo", "miniature", "lens_character", "rack_focus")
+SMOOTH = (
+    "film_halation",
+    "light_painting",
+    "vintage_photo",
+    "miniature",
+    "lens_character",
+    "rack_focus",
+    "depth_mist",
+    "ground_fog",
+)
 """Looks whose lengths are blurs, grain and glow: FLIP is at most 0.02."""
 LINES = {"blueprint": 0.2, "neon_edges": 0.07, "hologram": 0.04, "emboss_and_edges": 0.05, "watercolor": 0.05}
 """Drawn looks, and the most that FLIP may be: between 270 and 1080 lines it was 0.30 (blueprint), 0.42 (neon_edges) and
