@@ -19,10 +19,6 @@ UNROLLED_TAPS = (9, 17, 25, 33)
 """Lengths of convolutions that are written out without a loop; a shorter one is padded with zeros to the next of these,
 so that a slider for sigma compiles four programs at most. Longer ones take the driver too long to compile."""
 
-MAX_LOOPED_PIXELS = 2**18
-"""Pictures up to so many pixels, 512x512, are convolved in loops: compiling a text without a loop takes longer than it
-saves on them. Chosen by judgement."""
-
 
 def write_accessor(names: ShaderNames, item: Accessor, edge: Edge) -> list[str]:
     """`<name>_size`, `<name>_raw`, `<name>_at` and `<name>_near` for one picture.
@@ -62,11 +58,11 @@ def write_accessor(names: ShaderNames, item: Accessor, edge: Edge) -> list[str]:
     ]
 
 
-def write_convolution_accessor(names: ShaderNames, op: Convolve) -> list[str]:
+def write_convolution_accessor(names: ShaderNames, op: Convolve, is_strip: bool) -> list[str]:
     """Declare the accessor, the weights and the uniforms that all forms of a convolution share."""
     names.uniform("ivec2", (1, 0) if op.axis == 0 else (0, 1), "along")
     names.uniform("int", op.origin, "origin")
-    if names.form == "fragment" or not is_unrolled(op):
+    if not (is_strip and is_unrolled(op)):
         names.uniform("int", len(op.weights), "taps")
     glsl = glsl_type(names.shape(op.image).channels)
     block = f"layout(std140) uniform Weights {{ vec4 weights[{MAX_WEIGHTS // 4}]; }};"
@@ -74,7 +70,7 @@ def write_convolution_accessor(names: ShaderNames, op: Convolve) -> list[str]:
 
 
 def write_convolution(names: ShaderNames, op: Convolve) -> list[str]:
-    """`convolution`, one pixel of it, for fragment passes."""
+    """`convolution`, one pixel of it, for fragment passes and small pictures."""
     glsl = glsl_type(names.shape(op.image).channels)
     stride = names.uniform("int", op.stride, "stride")
     return [
@@ -89,8 +85,7 @@ def write_convolution(names: ShaderNames, op: Convolve) -> list[str]:
 
 def is_unrolled(op: Convolve) -> bool:
     """Whether all taps are written out."""
-    width, height = op.size
-    return op.stride > 1 or (len(op.weights) <= UNROLLED_TAPS[-1] and width * height > MAX_LOOPED_PIXELS)
+    return op.stride > 1 or len(op.weights) <= UNROLLED_TAPS[-1]
 
 
 def count_pixels(op: Convolve) -> int:

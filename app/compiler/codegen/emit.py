@@ -74,9 +74,10 @@ def _emit_root(root: Op, request: _PassRequest) -> EmittedProgram:
         _write_texel(names.shape(ref), result, half)
         for ref, result, half in zip(group.writes, parts.results, request.halves, strict=True)
     ]
-    count = bodies.count_pixels(parts.convolution) if parts.convolution else forms.count_rows(context)
+    count = forms.count_pixels(context, parts.convolution)
+    strip = parts.convolution if count > 1 else None
     if target.form == "compute":
-        main = forms.write_main(names, count, parts.convolution, parts.body, texels)
+        main = forms.write_main(names, count, strip, parts.body, texels)
     else:
         main = _write_fragment_main(names, parts.body, texels)
     lines = [
@@ -95,7 +96,7 @@ def _emit_root(root: Op, request: _PassRequest) -> EmittedProgram:
         Shader("\n".join(lines) + "\n", target.form, files, by_image),
         tuple((name, value) for name, _, value in names.uniforms),
         bodies.pad_weights(parts.convolution, target.form) if parts.convolution else (),
-        forms.count_groups(parts.convolution, count, program.size_on_device(group.writes[0])),
+        forms.count_groups(strip, count, program.size_on_device(group.writes[0])),
     )
 
 

@@ -18,6 +18,10 @@ from .names import ShaderNames, convert, glsl_channels
 ACCESSORS = ("raw", "at", "near", "size")
 """The endings of the functions that read a picture anywhere: `image_at` and so on."""
 
+SMALL_PIXELS = 2**18
+"""The most pixels, 512x512, of each picture of a pass whose invocations make one pixel, with convolutions in loops: a
+driver compiles that in two thirds of the time, which on such pictures is more than other forms save. By judgement."""
+
 NO_SEAM = (0, 0, 0, 0)
 """The uniform of a seam between fused functions, which changes no bit: see primitive/settled.glsl."""
 
@@ -38,6 +42,12 @@ class PassContext(Struct, frozen=True):
     def members(self) -> list[Op]:
         """Its operations in order, the root last."""
         return [self.program.ops[index] for index in self.group.members]
+
+    @property
+    def makes_strips(self) -> bool:
+        """Whether invocations may make several pixels: in compute passes, if a picture is large enough."""
+        sizes = map(self.program.size_on_device, (*self.group.reads, *self.group.writes))
+        return self.names.form == "compute" and any(width * height > SMALL_PIXELS for width, height in sizes)
 
     @property
     def functions(self) -> list[FunctionOp]:
@@ -111,8 +121,8 @@ def _(root: Reduce, context: PassContext) -> PassParts:
 @write_pass_parts.register
 def _(root: Convolve, context: PassContext) -> PassParts:
     names = context.names
-    functions, body = bodies.write_convolution_accessor(names, root), list[str]()
-    if names.form == "fragment":
+    functions, body = bodies.write_convolution_accessor(names, root, context.makes_strips), list[str]()
+    if not context.makes_strips:
         glsl = glsl_type(names.shape(root.image).channels)
         functions += bodies.write_convolution(names, root)
         body.append(f"{glsl} convolved = convolution();")
