@@ -7,7 +7,7 @@ from contextlib import closing
 import numpy as np
 import pytest
 from halation.compiler import Form
-from halation.compiler.codegen import pass_parts
+from halation.compiler.codegen import bodies
 from halation.renderer import Renderer, RenderRequest, open_device
 from halation.resources.sandbox import UNRESTRICTED
 from random_graphs import pictures, random_graph
@@ -44,7 +44,7 @@ def test_fused_equals_unfused_to_the_bit(engines, seed):
 def test_several_pixels_at_once_are_the_same_to_the_bit(engines, monkeypatch, seed):
     graph, wanted = random_graph(seed), RenderRequest(pictures(seed), precision="float")
     small = engines["compute", True].render(graph, wanted)
-    monkeypatch.setattr(pass_parts, "SMALL_PIXELS", 0)  # now as large pictures
+    monkeypatch.setattr(bodies, "SMALL_PIXELS", 0)  # now as large pictures
     device = open_device("compute", sandbox=UNRESTRICTED)
     with closing(Renderer(device, budget=0, sandbox=UNRESTRICTED)) as engine:
         same_bits(small, engine.render(graph, wanted))

@@ -19,6 +19,10 @@ UNROLLED_TAPS = (9, 17, 25, 33)
 """Lengths of convolutions that are written out without a loop; a shorter one is padded with zeros to the next of these,
 so that a slider for sigma compiles four programs at most. Longer ones take the driver too long to compile."""
 
+SMALL_PIXELS = 2**18
+"""Pictures up to so many pixels, 512x512, have passes that compile fast: convolutions in loops, one pixel for each
+invocation of others. Compiling more takes longer than it saves on them. Chosen by judgement."""
+
 
 def write_accessor(names: ShaderNames, item: Accessor, edge: Edge) -> list[str]:
     """`<name>_size`, `<name>_raw`, `<name>_at` and `<name>_near` for one picture.
@@ -70,7 +74,7 @@ def write_convolution_accessor(names: ShaderNames, op: Convolve, is_strip: bool)
 
 
 def write_convolution(names: ShaderNames, op: Convolve) -> list[str]:
-    """`convolution`, one pixel of it, for fragment passes and small pictures."""
+    """`convolution`, one pixel of it, for fragment passes."""
     glsl = glsl_type(names.shape(op.image).channels)
     stride = names.uniform("int", op.stride, "stride")
     return [
@@ -83,9 +87,27 @@ def write_convolution(names: ShaderNames, op: Convolve) -> list[str]:
     ]
 
 
+def write_small_decimation(names: ShaderNames, op: Convolve) -> list[str]:
+    """`convolution`, one pixel of it, for compute passes: four taps at a time share a read of weights."""
+    glsl = glsl_type(names.shape(op.image).channels)
+    stride = names.uniform("int", op.stride, "stride")
+    return [
+        f"{glsl} convolution() {{",
+        f"    ivec2 p = pixel + along * (pixel * ({stride} - 1) + origin);",
+        f"    {glsl} sum = {glsl}(0.0);",
+        "    for (int j = 0; j < taps; j += 4) {",
+        "        vec4 four = weights[j >> 2];",
+        *(f"        sum += four.{component} * image_at(p); p += along;" for component in "xyzw"),
+        "    }",
+        "    return sum;",
+        "}",
+    ]
+
+
 def is_unrolled(op: Convolve) -> bool:
     """Whether all taps are written out."""
-    return op.stride > 1 or len(op.weights) <= UNROLLED_TAPS[-1]
+    width, height = op.size
+    return op.stride > 1 or (len(op.weights) <= UNROLLED_TAPS[-1] and width * height > SMALL_PIXELS)
 
 
 def count_pixels(op: Convolve) -> int:

@@ -74,8 +74,8 @@ def _emit_root(root: Op, request: _PassRequest) -> EmittedProgram:
         _write_texel(names.shape(ref), result, half)
         for ref, result, half in zip(group.writes, parts.results, request.halves, strict=True)
     ]
-    count = forms.count_pixels(context, parts.convolution)
-    strip = parts.convolution if count > 1 else None
+    strip = parts.convolution if parts.is_strip else None
+    count = bodies.count_pixels(strip) if strip else forms.count_rows(context)
     if target.form == "compute":
         main = forms.write_main(names, count, strip, parts.body, texels)
     else:

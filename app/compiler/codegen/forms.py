@@ -30,16 +30,14 @@ above has read are still in the cache. 8 groups are 512 pixels, 8 KiB in a row o
 strip take half a MiB, which fits into the second cache of a processor core. Chosen by this estimate."""
 
 
-def count_pixels(context: PassContext, convolve: Convolve | None) -> int:
-    """How many pixels an invocation of a compute pass makes: of a column, or along the axis of a convolution.
+def count_rows(context: PassContext) -> int:
+    """How many pixels of a column an invocation of a compute pass makes. Functions with loops share no loads.
 
-    Functions with loops share no loads. If several functions read neighbors, their texels do not fit into registers,
-    and two rows would gain nothing.
+    If several functions read neighbors, their texels do not fit into registers, and two rows would gain nothing. On
+    small pictures the time to compile counts most, and one row takes three quarters of it.
     """
-    if not context.makes_strips:
+    if context.is_small:
         return 1
-    if convolve:
-        return bodies.count_pixels(convolve)
     gathers = sum(bool(op.files) and not op.is_pointwise and op.is_inlinable for op in context.members)
     return ROWS if gathers < 2 and all(op.is_straight(context.library) for op in context.members) else 1
 

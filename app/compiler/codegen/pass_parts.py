@@ -18,10 +18,6 @@ from .names import ShaderNames, convert, glsl_channels
 ACCESSORS = ("raw", "at", "near", "size")
 """The endings of the functions that read a picture anywhere: `image_at` and so on."""
 
-SMALL_PIXELS = 2**18
-"""The most pixels, 512x512, of each picture of a pass whose invocations make one pixel, with convolutions in loops: a
-driver compiles that in two thirds of the time, which on such pictures is more than other forms save. By judgement."""
-
 NO_SEAM = (0, 0, 0, 0)
 """The uniform of a seam between fused functions, which changes no bit: see primitive/settled.glsl."""
 
@@ -44,10 +40,10 @@ class PassContext(Struct, frozen=True):
         return [self.program.ops[index] for index in self.group.members]
 
     @property
-    def makes_strips(self) -> bool:
-        """Whether invocations may make several pixels: in compute passes, if a picture is large enough."""
+    def is_small(self) -> bool:
+        """Whether its pictures have so few pixels that a form is better that compiles fast."""
         sizes = map(self.program.size_on_device, (*self.group.reads, *self.group.writes))
-        return self.names.form == "compute" and any(width * height > SMALL_PIXELS for width, height in sizes)
+        return all(width * height <= bodies.SMALL_PIXELS for width, height in sizes)
 
     @property
     def functions(self) -> list[FunctionOp]:
@@ -77,7 +73,7 @@ class InlinedGather(Struct, frozen=True):
 class PassParts(Struct, frozen=True):
     """Text of a pass: shader files; functions, of which `accessors` read pictures; statements of main; results.
 
-    `convolution` is set where compute passes make several pixels at once.
+    `convolution` is set where a pass convolves, and `is_strip` where its invocations make several pixels of that.
     """
 
     shaders: list[str]
@@ -87,6 +83,7 @@ class PassParts(Struct, frozen=True):
     accessors: frozenset[str] = frozenset()
     inlined: tuple[InlinedGather, ...] = ()
     convolution: Convolve | None = None
+    is_strip: bool = False
 
 
 @singledispatch
@@ -121,12 +118,14 @@ def _(root: Reduce, context: PassContext) -> PassParts:
 @write_pass_parts.register
 def _(root: Convolve, context: PassContext) -> PassParts:
     names = context.names
-    functions, body = bodies.write_convolution_accessor(names, root, context.makes_strips), list[str]()
-    if not context.makes_strips:
+    is_strip = names.form == "compute" and not (root.stride > 1 and context.is_small)
+    functions, body = bodies.write_convolution_accessor(names, root, is_strip), list[str]()
+    if not is_strip:
+        write = bodies.write_convolution if names.form == "fragment" else bodies.write_small_decimation
+        functions += write(names, root)
         glsl = glsl_type(names.shape(root.image).channels)
-        functions += bodies.write_convolution(names, root)
         body.append(f"{glsl} convolved = convolution();")
-    return PassParts([EDGES], functions, body, ["convolved"], convolution=root)
+    return PassParts([EDGES], functions, body, ["convolved"], convolution=root, is_strip=is_strip)
 
 
 @write_pass_parts.register
