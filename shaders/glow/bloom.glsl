@@ -7,15 +7,21 @@ vec4 bloom_light(vec4 image, float threshold, float knee, float limit) {
     return bright_light(image, threshold, knee, limit);
 }
 
+// The weight of a texel of 6 x 6 in `bloom_shrink`. With an array Mesa would write out all 36 texels, which compiles
+// longer.
+float bloom_weight(ivec2 at) {
+    bvec2 is_twice = equal(at / 2, ivec2(1)), is_inside = equal((at + 3) / 4, ivec2(1));
+    vec2 corners = mix(vec2(1.0), vec2(2.0), is_twice);
+    return corners.x * corners.y + (all(is_inside) ? 4.0 : 0.0);
+}
+
 // Halves the size: five overlapping boxes of 4 x 4 pixels, the middle one with four times the weight of the others
 // (Jimenez 2014).
 vec4 bloom_shrink() {
-    const float corners[6] = float[](1.0, 1.0, 2.0, 2.0, 1.0, 1.0);
-    const float center[6] = float[](0.0, 1.0, 1.0, 1.0, 1.0, 0.0);
     vec4 sum = vec4(0.0);
     for (int y = 0; y < 6; ++y)
         for (int x = 0; x < 6; ++x)
-            sum += (corners[x] * corners[y] + 4.0 * center[x] * center[y]) * image_at(2 * pixel + ivec2(x, y) - 2);
+            sum += bloom_weight(ivec2(x, y)) * image_at(2 * pixel + ivec2(x, y) - 2);
     return sum / 128.0;
 }
 
