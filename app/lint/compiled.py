@@ -72,6 +72,10 @@ RULES = (
 SIZE = (1920, 1080)
 """The size that is assumed for a missing picture."""
 
+MAX_UNREADABLE = 1000
+"""Files that cannot be read before `check` looks for no others. Chosen by judgement: as many as a report lists, and
+looking for each takes as long as checking three nodes."""
+
 _POINTER = b"version https://git-lfs.github.com/spec/"
 _POINTER_SIZE = 1024
 """How a pointer of git LFS begins, and the size in bytes that it never reaches (specification of git LFS)."""
@@ -176,6 +180,8 @@ class NotingProvider(Struct, dict=True, eq=False):
             return self._answer("once", key, ask)
         except InputError as fault:
             self.faults[str(_detach(fault))] = self._asked.get(path, path)
+        if len(self.faults) > MAX_UNREADABLE:
+            raise ManyFilesError(f"more than {MAX_UNREADABLE:,} files cannot be read: no others were looked for")
         return None
 
     def _answer(self, kind: str, key: object, ask: Callable[[], T]) -> T:
@@ -189,6 +195,10 @@ class NotingProvider(Struct, dict=True, eq=False):
         if isinstance(answer, HalationError):
             raise answer
         return answer
+
+
+class ManyFilesError(InputError):
+    """So many files cannot be read that the others are not looked for."""
 
 
 def _detach(fault: HalationError) -> HalationError:
@@ -218,6 +228,8 @@ def problems(graph: Graph, world: NotingProvider) -> Iterator[tuple[int, Problem
     }
     try:
         examine(graph, Request(bindings=bindings, frame=world.first_frame(graph)), world)
+    except ManyFilesError as fault:
+        yield fault.exit_code, Problem("", "", str(fault), UNREADABLE_FILE)
     except InputError as fault:
         world.faults.setdefault(str(fault), "")
     except HalationError as fault:

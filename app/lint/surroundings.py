@@ -55,8 +55,7 @@ class Surroundings(Struct, eq=False):
                 if right := self._find_spelling(folder, path):
                     sentence = f"{asker}: '{path}' is called '{right}' on disk: spell it like that"
                     yield replace(problem, sentence=sentence)
-                whole = Path(os.path.normpath(Path(folder, path)))
-                if root and root not in whole.parents:
+                if root and not os.path.normpath(os.path.join(folder, path)).startswith(os.path.join(root, "")):  # noqa: PTH118
                     sentence = f"{asker}: '{path}' leads out of the repository, where a fresh clone has nothing"
                     yield replace(problem, sentence=sentence, rule=OUTSIDE_REPOSITORY)
 

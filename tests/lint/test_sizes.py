@@ -13,8 +13,9 @@ import numpy as np
 import pytest
 from halation.cli import options
 from halation.document import limits
-from halation.errors import DocumentError
+from halation.errors import DocumentError, InputError
 from halation.inputs.provider import MediaProvider
+from halation.lint import compiled
 from halation.lint.checking import MAX_FINDINGS, CheckReport, GraphChecker
 from halation.lint.compiled import NotingProvider
 from halation.nodes import Kind
@@ -67,6 +68,15 @@ def test_a_file_that_is_missing_is_looked_for_once(monkeypatch: pytest.MonkeyPat
     report = check(json.dumps(missing(3)))
     assert [finding.problem.node for finding in report.findings if finding.code] == ["r0", "r1", "r2"]
     assert sorted(asked_paths) == ["r0.exr", "r1.exr", "r2.exr"]
+
+
+def test_of_many_missing_files_the_first_are_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    """To look for each of 40,000 took 20 s."""
+    monkeypatch.setattr(compiled, "MAX_UNREADABLE", 5)
+    report = check(json.dumps(missing(30)))
+    sentences = [finding.problem.sentence for finding in report.findings if finding.code]
+    assert report.code == InputError.exit_code and len(sentences) == 7
+    assert "more than 5 files cannot be read: no others were looked for" in sentences
 
 
 def test_a_picture_outside_of_its_folder_says_nothing_about_others_of_its_name(tmp_path: Path) -> None:

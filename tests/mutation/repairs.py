@@ -333,6 +333,13 @@ REPAIRS = (
         "tests/lint/test_sizes.py::test_a_file_that_is_missing_is_looked_for_once",
     ),
     Repair(
+        "of many missing files only the first are looked for",
+        "app/lint/compiled.py",
+        "        if len(self.faults) > MAX_UNREADABLE:\n",
+        "        if len(self.faults) > 10**9:\n",
+        "tests/lint/test_sizes.py::test_of_many_missing_files_the_first_are_looked_for",
+    ),
+    Repair(
         "patterns tell nothing of what lies outside",
         "app/resources/folders.py",
         '    sandbox.check(start or ".")\n',

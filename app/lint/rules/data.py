@@ -42,7 +42,7 @@ def _data(sheet: GraphFacts, source: Port) -> str:
         layer = end.layer if end.layer or end.kind is Kind.IMAGE else source.socket
     else:
         layer = layer_read(sheet.graph.nodes[source.node], source.socket)
-    return layer if is_data_layer(layer) else ""
+    return layer if layer and is_data_layer(layer) else ""
 
 
 def is_data_layer(name: str) -> bool:
