@@ -30,6 +30,7 @@ MAX_DEPTH = 64
 """The deepest nesting: a choice, far below the recursion limit of Python."""
 
 _OR, _AND, _COMPARE, _SUM, _PRODUCT = 1, 2, 3, 4, 5
+"""Levels of operators that have two operands: a higher one binds more tightly."""
 
 _LEVELS = {
     "or": _OR,
@@ -45,6 +46,8 @@ _LEVELS = {
 }
 _CONSTANTS = {"pi": math.pi, "tau": math.tau, "e": math.e, "true": True, "false": False}
 _CLOSING = {"(": ")", "[": "]"}
+_PREFIXES = frozenset({"-", "+", "!", "not"})
+_POWERS = frozenset({"^", "**"})
 
 ParsedPart = tuple[Part, int]
 """A part, and how deep it is nested."""
@@ -104,10 +107,9 @@ class _Parser(Generic[Part]):
         self._next = next(self._rest, token)
         return token
 
-    def _take_if(self, *words: str) -> Token | None:
-        """Take the next token if it is one of these words; else None."""
-        token = self._next
-        return self._take() if token.text in words and token.kind in ("operator", "bracket", "word") else None
+    def _take_if(self, word: str) -> Token | None:
+        """Take the next token if it is this operator or bracket; else None. No token of another kind has its text."""
+        return self._take() if self._next.text == word else None
 
     def _fail(self, token: Token, sentence: str) -> NoReturn:
         raise ExpressionError(self._text, token.start, sentence)
@@ -149,8 +151,7 @@ class _Parser(Generic[Part]):
 
     def _next_level(self) -> int:
         """The level of the next token if it is an operator, else 0."""
-        token = self._next
-        return _LEVELS.get(token.text, 0) if token.kind in ("operator", "word") else 0
+        return _LEVELS.get(self._next.text, 0)
 
     def _parse_chain(self, first: ParsedPart[Part], level: int) -> ParsedPart[Part]:
         """All operators of one level after an operand, as one part, so that long sums are not deep."""
@@ -173,17 +174,21 @@ class _Parser(Generic[Part]):
 
     def _parse_unary(self) -> ParsedPart[Part]:
         """A power, or an operand with a sign or a negation."""
-        token = self._take_if("-", "+", "!", "not")
-        if token is None:
-            base = self._parse_postfix()
-            token = self._take_if("^", "**")
-            if token is None:
-                return base
-            self._enter(token)
-            power = self._parse_unary()
-            self._depth -= 1
-            code = self._maker.make_arithmetic(self._text, base[0], [("^", token.start, power[0])])
-            return self._check_depth(token, code, (base, power))
+        if self._next.text in _PREFIXES:
+            return self._parse_prefix()
+        base = self._parse_postfix()
+        if self._next.text not in _POWERS:
+            return base
+        token = self._take()
+        self._enter(token)
+        power = self._parse_unary()
+        self._depth -= 1
+        code = self._maker.make_arithmetic(self._text, base[0], [("^", token.start, power[0])])
+        return self._check_depth(token, code, (base, power))
+
+    def _parse_prefix(self) -> ParsedPart[Part]:
+        """A sign or a negation, and its operand."""
+        token = self._take()
         self._enter(token)
         part = self._parse_binary(_COMPARE) if token.text == "not" else self._parse_unary()
         self._depth -= 1
