@@ -119,6 +119,12 @@ def decode_srgb(encoded: Array) -> Array:
     return np.copysign(np.where(size <= 0.04045, size / 12.92, ((size + 0.055) / 1.055) ** 2.4), encoded)
 
 
+def encode_srgb(light: Array) -> Array:
+    """The inverse of `decode_srgb`."""
+    size = np.abs(light)
+    return np.copysign(np.where(size <= 0.0031308, 12.92 * size, 1.055 * size ** (1.0 / 2.4) - 0.055), light)
+
+
 def to_float(array: Array) -> Array:
     """8- and 16-bit integers as 0..1 in float32. 32-bit integers are counts and keep their numbers; so do floats."""
     if array.dtype in (np.uint8, np.uint16):

@@ -22,6 +22,7 @@ from ..color.lut_files import (
     write_clf,
     write_cube,
 )
+from ..color.transforms import decode_srgb, encode_srgb
 from ..compiler import Request
 from ..compiler.lowering.lower import lower
 from ..compiler.planner import graph_library
@@ -205,13 +206,10 @@ class _TableExport:
     def _encode(self, light: Array) -> Array:
         if self.encoding == "linear":
             return light
-        codes = np.where(light <= 0.0031308, light * 12.92, 1.055 * np.maximum(light, 0.0031308) ** (1 / 2.4) - 0.055)
-        return np.clip(codes, 0.0, 1.0).astype(np.float32)
+        return np.clip(encode_srgb(light), 0.0, 1.0).astype(np.float32)
 
     def _decode(self, codes: Array) -> Array:
-        if self.encoding == "linear":
-            return codes
-        return np.where(codes <= 0.04045, codes / 12.92, ((codes + 0.055) / 1.055) ** 2.4)
+        return codes if self.encoding == "linear" else decode_srgb(codes)
 
 
 def _apply_colors(table: Array, codes: Array) -> Array:

@@ -9,6 +9,7 @@ from typing import Any
 
 from halation.nodes import Value
 
+from ...custom_nodes.isf.inputs import encode_light
 from ...graph import Graph
 from ..knobs import Knob, KnobControl, find_knob_controls
 from .affine import FittedKnob
@@ -57,7 +58,7 @@ def _make_control(shader_name: str, control: KnobControl) -> IsfControl:
     low, high = control.knobs[0].low, control.knobs[0].high
     entry: Section = {"NAME": shader_name, "LABEL": control.label or control.name}
     if value.type == "color":
-        straight = [*map(_encode_light, parts[:3]), *parts[3:], 1.0]
+        straight = [*map(encode_light, parts[:3]), *parts[3:], 1.0]
         entry |= {"TYPE": "color", "DEFAULT": straight[:4]}
         texts = [f"@halation_light(@{shader_name}.{letter})" for letter in "rgb"] + [f"@{shader_name}.a"]
     elif value.type == "vector":
@@ -90,8 +91,3 @@ def _make_knob(knob: Knob, text: str, value: Value) -> FittedKnob:
     step = 1.0 if value.type == "int" else (knob.high - knob.low) * _STEP_SHARE
     step = -step if rest + _FARTHEST_STEPS * step > min(knob.high, value.maximum) else step
     return FittedKnob(name, text, rest, rest + step, step)
-
-
-def _encode_light(light: float) -> float:
-    code = 12.92 * abs(light) if abs(light) <= 0.0031308 else 1.055 * abs(light) ** (1.0 / 2.4) - 0.055
-    return code if light >= 0.0 else -code

@@ -89,7 +89,7 @@ def make_isf_value(entry: IsfInput, name: str) -> Value:
         doc = "True for as long as it is on: key it for single frames." if entry.type == "event" else ""
         return Value(name, "bool", first[0] > 0.5, doc=doc, label=label)
     if entry.type == "color":
-        rgba = (*(_decode_light(part) for part in first[:3]), first[3])
+        rgba = (*(decode_light(part) for part in first[:3]), first[3])
         return Value(name, "color", rgba, length=4, label=label)
     if entry.type == "point2D":
         if is_position(entry):
@@ -111,7 +111,7 @@ def make_uniform(entry: IsfInput, plain: Scalar, display: bool) -> Uniform:
         return 0
     if isinstance(plain, tuple):
         if entry.type == "color":
-            return (*(_encode_light(part) if display else part for part in plain[:3]), plain[3])
+            return (*(encode_light(part) if display else part for part in plain[:3]), plain[3])
         return (plain[0], 1.0 - plain[1]) if is_position(entry) else plain
     return bool(plain) if entry.type in ("bool", "event") else plain
 
@@ -150,15 +150,15 @@ def _choose_default(entry: IsfInput) -> tuple[float, ...]:
     return (min(max(0.0, low), high),)
 
 
-def _decode_light(code: float) -> float:
+def decode_light(code: float) -> float:
     """A display value of sRGB as light (IEC 61966-2-1)."""
     size = abs(code)
     light = size / 12.92 if size <= 0.04045 else ((size + 0.055) / 1.055) ** 2.4
     return light if code >= 0.0 else -light
 
 
-def _encode_light(light: float) -> float:
-    """The inverse of `_decoded`."""
+def encode_light(light: float) -> float:
+    """The inverse of `decode_light`."""
     size = abs(light)
     code = 12.92 * size if size <= 0.0031308 else 1.055 * size ** (1.0 / 2.4) - 0.055
     return code if light >= 0.0 else -code

@@ -11,7 +11,7 @@ import numpy as np
 import OpenImageIO as oiio
 
 from ...color.display import to_display
-from ...color.transforms import Array, decode_srgb
+from ...color.transforms import Array, decode_srgb, encode_srgb
 from ...errors import OutputError
 from ...resources.atomic_write import write_atomically
 from ...resources.sandbox import Sandbox
@@ -73,7 +73,7 @@ def show_data(array: Array, low: float, high: float) -> Array:
 def make_caption(light: Array, lines: Sequence[str]) -> Array:
     """A darkened picture behind lines of text: for results that are numbers."""
     height, width = light.shape[:2]
-    paper, letters = oiio.ImageBuf(_encode_srgb(light * 0.06)), height // 9
+    paper, letters = oiio.ImageBuf(_encode_shown(light * 0.06)), height // 9
     top = height / 2 - (len(lines) - 1) * letters * 0.75
     for index, line in enumerate(lines):
         at = (width // 2, round(top + index * letters * 1.5))
@@ -163,7 +163,7 @@ def write_sheet(path: str | Path, light: Array, description: str = "", *, sandbo
     height, width, channels = light.shape
     pixels = np.empty((height, width, channels), np.uint8)
     for top in range(0, height, _ROWS):
-        pixels[top : top + _ROWS] = _encode_srgb(light[top : top + _ROWS]) * 255.0 + 0.5
+        pixels[top : top + _ROWS] = _encode_shown(light[top : top + _ROWS]) * 255.0 + 0.5
     spec = oiio.ImageSpec(width, height, channels, "uint8")
     spec.attribute("compression", f"jpeg:{_QUALITY}")
     spec.attribute("jpeg:subsampling", "4:2:0")
@@ -247,7 +247,7 @@ def _paste(canvas: Array, picture: Array, left: int, top: int, cell: tuple[int, 
     tile = np.full((cell[1], cell[0], 3), _TILE_COLOR, np.float32)
     height, width = picture.shape[:2]
     y, x = (cell[1] - height) // 2, (cell[0] - width) // 2
-    tile[y : y + height, x : x + width] = _encode_srgb(picture)
+    tile[y : y + height, x : x + width] = _encode_shown(picture)
     inside = [np.minimum(np.arange(side), np.arange(side)[::-1]) + 0.5 for side in (cell[1], cell[0])]
     dy, dx = np.meshgrid(*(np.maximum(_RADIUS - distance, 0.0) for distance in inside), indexing="ij")
     cover = np.clip(_RADIUS + 0.5 - np.hypot(dx, dy), 0.0, 1.0).astype(np.float32)[..., None]
@@ -291,11 +291,9 @@ def _spell_out(name: str) -> str:
     return name.replace("_", " ")
 
 
-def _encode_srgb(light: Array) -> Array:
-    """sRGB values of light (IEC 61966-2-1)."""
-    light = np.clip(light, 0.0, 1.0)
-    codes = np.where(light <= 0.0031308, 12.92 * light, 1.055 * np.maximum(light, 0.0031308) ** (1 / 2.4) - 0.055)
-    return codes.astype(np.float32)
+def _encode_shown(light: Array) -> Array:
+    """sRGB values of light, as far as a screen shows it."""
+    return encode_srgb(np.clip(light, 0.0, 1.0)).astype(np.float32)
 
 
 def _read_light(paper: oiio.ImageBuf) -> Array:

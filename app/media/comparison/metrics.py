@@ -8,7 +8,7 @@ from math import inf, log10, nan
 import numpy as np
 import OpenImageIO as oiio
 
-from ...color.transforms import Array, decode_srgb, to_float, to_three_channels
+from ...color.transforms import Array, decode_srgb, encode_srgb, to_float, to_three_channels
 from ...errors import UsageError
 
 EIGHT_BIT_STEP = 1.0 / 255.0
@@ -116,7 +116,7 @@ def measure_ssim(actual: Array, expected: Array, *, linear: bool = True) -> floa
     actual_numbers, expected_numbers = _check_pair(actual, expected)
     broken = _find_broken(actual_numbers, expected_numbers)
     first, second = (
-        _encode_srgb(_zero_non_finite(item)) if linear else _zero_non_finite(item)
+        encode_srgb(_zero_non_finite(item)) if linear else _zero_non_finite(item)
         for item in (actual_numbers, expected_numbers)
     )
     first, second = np.where(broken, 0.0, first), np.where(broken, 0.0, second)
@@ -233,11 +233,6 @@ def _psnr(rms: float, *numbers: Array) -> float:
         return inf
     peak = max(1.0, *(float(item.max(initial=0.0)) for item in numbers))
     return -inf if rms == inf else 20.0 * log10(peak / rms)
-
-
-def _encode_srgb(linear: Array) -> Array:
-    size = np.abs(linear)
-    return np.copysign(np.where(size <= 0.0031308, 12.92 * size, 1.055 * size ** (1.0 / 2.4) - 0.055), linear)
 
 
 def _gaussian_mean(channel: Array) -> Array:
