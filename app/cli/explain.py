@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
 
@@ -31,7 +32,7 @@ from .watchdog import Timeout, run_watched
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from ..compiler import Form, Plan, Precision, Request, ResolvedLength, Target
+    from ..compiler import Form, Plan, Request, ResolvedLength, Target
     from ..graph import Graph, Output
     from ..inputs.lazy_provider import LazyResourceProvider
     from ..inputs.provider import Binding
@@ -73,21 +74,18 @@ def explain(
     Needs no OpenGL, except for --html and --form device, which also prints which form of passes the device of this
     machine needs, and why.
     """
-    from msgspec.structs import replace
-
-    from .. import compiler
+    from ..compiler import Request
     from ..errors import UsageError
     from ..inputs.lazy_provider import LazyResourceProvider
 
     if dot + as_json + (html is not None) > 1:
         raise UsageError("--dot, --html and --json: choose one")
     form_or_device, memory_limit = parsing.parse_form_or_device(form or "compute"), parsing.parse_memory(memory)
-    parsed_precision = parsing.parse_precision(precision)
     opened_graph = open_graph(graph, parsing.parse_sets(sets), sandbox=sandbox)
     report_problems(graph, opened_graph)
     provider = LazyResourceProvider(sandbox)
     bindings = resolve_inputs(opened_graph, parsing.parse_inputs(inputs))
-    request = compiler.Request(
+    request = Request(
         parsing.find_targets(opened_graph, node),
         provider.bind(opened_graph, bindings),
         parsing.parse_size(size),
@@ -96,27 +94,41 @@ def explain(
     )
     if html is not None:
         wanted_form = form_or_device if form and form_or_device != "device" else None
-        order = _PageOrder(html, opened_graph, bindings, wanted_form, memory_limit, parsed_precision)
-        return run_watched(
-            lambda: _write_page(order, request, sandbox), (opened_graph,), timeout, as_json, memory=memory_limit
-        )
-    target = replace(_choose_target(form_or_device, sandbox), memory=memory_limit)
-    # Planned as for one EXR file per output.
-    request = replace(request, by_rows=frozenset(request.targets or opened_graph.outputs))
-    plan = compiler.compile_graph(opened_graph, request, provider, target=target, precision=parsed_precision)
-    if dot:
-        print(compiler.write_dot(plan))
-    else:
-        _print_plan(opened_graph, plan, request, provider, as_json)
+        order = _PageOrder(html, opened_graph, bindings, wanted_form, memory_limit, precision)
+        page = partial(_write_page, order, request, sandbox)
+        return run_watched(page, (opened_graph,), timeout, as_json, memory=memory_limit)
+    plan = _compile(opened_graph, request, provider, _choose_target(form_or_device, memory_limit, sandbox), precision)
+    _print_plan(opened_graph, plan, request, provider, "dot" if dot else "json" if as_json else "text")
     return 0
 
 
-def _print_plan(graph: Graph, plan: Plan, request: Request, provider: LazyResourceProvider, as_json: bool) -> None:
-    """Print a plan, and how many pixels each length of the graph is."""
+def _compile(
+    graph: Graph, request: Request, provider: LazyResourceProvider, target: Target, precision: str | None
+) -> Plan:
+    """The plan for one EXR file per output."""
+    from msgspec.structs import replace
+
+    from ..compiler import compile_graph
+
+    request = replace(request, by_rows=frozenset(request.targets or graph.outputs))
+    return compile_graph(graph, request, provider, target=target, precision=parsing.parse_precision(precision))
+
+
+def _print_plan(
+    graph: Graph,
+    plan: Plan,
+    request: Request,
+    provider: LazyResourceProvider,
+    layout: Literal["text", "json", "dot"],
+) -> None:
+    """Print a plan, and how many pixels each length of the graph is, which a Graphviz graph has no place for."""
     from .. import compiler
 
+    if layout == "dot":
+        print(compiler.write_dot(plan))
+        return
     lengths = compiler.resolve_lengths(graph, request, provider)
-    if as_json:
+    if layout == "json":
         print_json({**compiler.plan_as_json(plan), "lengths": [_length_facts(item) for item in lengths]})
     else:
         views = _describe_views(graph, plan, provider)
@@ -135,7 +147,7 @@ class _PageOrder(NamedTuple):
     bindings: Mapping[str, Binding | Callable[[int], Binding]]
     form: Form | None
     memory: int
-    precision: Precision | None
+    precision: str | None
 
 
 def _write_page(order: _PageOrder, request: Request, sandbox: Sandbox) -> int:
@@ -152,7 +164,15 @@ def _write_page(order: _PageOrder, request: Request, sandbox: Sandbox) -> int:
     renderer = Renderer(open_device(order.form, order.memory, sandbox=sandbox), budget=0, sandbox=sandbox)
     graph, output, targets = order.graph, order.output, request.targets
     plan = renderer.compile(
-        graph, RenderRequest(order.bindings, targets, request.size, request.scale, request.frame, order.precision)
+        graph,
+        RenderRequest(
+            order.bindings,
+            targets,
+            request.size,
+            request.scale,
+            request.frame,
+            parsing.parse_precision(order.precision),
+        ),
     )
     renderer.runner.measure(plan)  # a first run, in which drivers compile: the times of the second one are shown
     name, surface = next(iter(plan.outputs.items()))
@@ -192,14 +212,14 @@ def _describe_view(output: Output, plan: Plan, name: str, provider: LazyResource
     return "that of the config, since it has light of a scene"
 
 
-def _choose_target(form: Form | Literal["device"], sandbox: Sandbox) -> Target:
-    """The device to plan for: that of this machine, or a null device with a form."""
+def _choose_target(form: Form | Literal["device"], memory: int, sandbox: Sandbox) -> Target:
+    """The device to plan for, with so much memory: that of this machine, or a null device with a form."""
     from msgspec.structs import replace
 
     if form != "device":
         from ..compiler import NULL
 
-        return replace(NULL, form=form)
+        return replace(NULL, form=form, memory=memory)
     from ..renderer import open_device
 
-    return open_device(sandbox=sandbox).target
+    return replace(open_device(sandbox=sandbox).target, memory=memory)

@@ -1,5 +1,7 @@
 """`halation render`: renders a graph to files."""
 
+from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -134,15 +136,8 @@ def render(
     A file name with a place for the frame number (shot.####.png, shot.%04d.png) renders all frames of the graph, unless
     --frame or --frames chooses some. --each 'photos/*.jpg' -o 'graded/{stem}.png' renders many files.
     """
-    form_of_passes = parsing.parse_form(form)
-    if not output and not each:
-        raise UsageError("missing option '-o' / '--output'; see halation render --help")
-    if deterministic and form_of_passes == "compute":
-        raise UsageError("--deterministic renders with fragment passes: leave out --form compute")
-    if burn_in and node:
-        raise UsageError("--burn-in writes over the outputs of the graph: leave out --node")
-    if each and str(graph) == "-" and "-" in each:
-        raise UsageError("GRAPH and --each cannot both be read from standard input: name a file for one of them")
+    _check_files(graph, output, each)
+    _check_picture(deterministic, parsing.parse_form(form), burn_in, node)
     if (path_map or priority or detach) and not cluster:
         raise UsageError("--map, --priority and --detach are for a cluster: write --cluster ADDRESS too")
     from ..renderer.jobs.render_job import RenderJob
@@ -167,7 +162,7 @@ def render(
         scale=parsing.parse_scale(scale),
         frames=parsing.parse_frame_options(frame, frames) or (),
         precision=parsing.parse_precision(precision),
-        form=form_of_passes,
+        form=parsing.parse_form(form),
         memory=parsing.parse_memory(memory),
         deterministic=deterministic,
         destinations=tuple((name, str(path)) for name, path in destinations),
@@ -191,3 +186,19 @@ def render(
 
     options = ClusterOptions(cluster, parse_path_map(path_map or ()), priority, detach)
     return execute_on_cluster(job, options, parsing.parse_progress(progress), as_json)
+
+
+def _check_files(graph: Path, output: Sequence[str] | None, each: Sequence[str] | None) -> None:
+    """Raise UsageError where files are missing, or two of them are standard input."""
+    if not output and not each:
+        raise UsageError("missing option '-o' / '--output'; see halation render --help")
+    if each and str(graph) == "-" and "-" in each:
+        raise UsageError("GRAPH and --each cannot both be read from standard input: name a file for one of them")
+
+
+def _check_picture(deterministic: bool, form: str | None, burn_in: bool, node: str) -> None:
+    """Raise UsageError for flags of the picture that exclude each other."""
+    if deterministic and form == "compute":
+        raise UsageError("--deterministic renders with fragment passes: leave out --form compute")
+    if burn_in and node:
+        raise UsageError("--burn-in writes over the outputs of the graph: leave out --node")

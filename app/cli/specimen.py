@@ -22,6 +22,7 @@ NODE = "node"
 """The id that the node has in these graphs."""
 
 FULL_HD = (1920, 1080)
+"""HDTV (ITU-R BT.709)."""
 
 BUILT_IN = ColorSettings("ocio://default")
 """A fixed color config, so that the plan of a node does not depend on $OCIO."""

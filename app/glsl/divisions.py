@@ -27,6 +27,7 @@ _PREFIXES = frozenset({"-", "+", "!", "~", "++", "--"})
 _MULTIPLICATIVE = frozenset({"*", "/", "%"})
 _DIVIDERS: Mapping[str, str] = {"/": QUOTIENT, "%": REMAINDER, "/=": QUOTIENT, "%=": REMAINDER}
 _SMALLEST = -(1 << 31)
+"""The smallest int of GLSL. Divided by -1 it has no result, which ends the process on a processor (SIGFPE)."""
 
 
 def guard_divisions(code: str, outside_types: Mapping[str, str] | None = None) -> str:

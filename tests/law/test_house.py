@@ -163,3 +163,66 @@ def test_no_module_keeps_mutable_state() -> None:
         for item in ast.walk(ast.parse(path.read_text("utf-8")))
         if isinstance(item, ast.Global)
     ]
+
+
+LONGEST_FUNCTION = 50
+"""Lines of a function. Of a command its flags and its help, which are the arguments and the docstring, do not count."""
+
+
+def measure_functions(path: Path) -> dict[str, int]:
+    """The lines of each function of a file, by where it is."""
+    is_command = path.relative_to(ROOT).parts[:2] == ("app", "cli")
+    lengths: dict[str, int] = {}
+    for item in ast.walk(ast.parse(path.read_text("utf-8"))):
+        if isinstance(item, ast.FunctionDef | ast.AsyncFunctionDef):
+            start = item.lineno
+            if is_command and len(item.body) > 1:
+                start = item.body[1 if ast.get_docstring(item) else 0].lineno
+            lengths[f"{label(path)}: {item.name}"] = (item.end_lineno or start) - start + 1
+    return lengths
+
+
+def test_functions_are_short() -> None:
+    product = [path for path in python_files() if path.relative_to(ROOT).parts[0] in ("app", "nodes")]
+    lengths = {name: length for path in product for name, length in measure_functions(path).items()}
+    assert not {name: length for name, length in lengths.items() if length > LONGEST_FUNCTION}
+
+
+_PLAIN_NUMBERS = (-1, 0, 1, 2)
+"""Numbers that need no reason."""
+
+
+def list_numbers(value: ast.expr) -> list[complex]:
+    """The numbers that an expression is written of; none where it holds names or calls, which say what they are."""
+    parts = [item for item in ast.walk(value) if isinstance(item, ast.expr)]
+    kinds = (ast.Constant, ast.Tuple, ast.BinOp, ast.UnaryOp)
+    if not all(isinstance(item, kinds) for item in parts):
+        return []
+    numbers = [item.value for item in parts if isinstance(item, ast.Constant)]
+    return [number for number in numbers if isinstance(number, int | float) and not isinstance(number, bool)]
+
+
+def find_unexplained_numbers(path: Path) -> list[str]:
+    """The constants of a module that are numbers and have neither a comment nor a text below, alone or as a group."""
+    text = path.read_text("utf-8")
+    lines, body = text.splitlines(), ast.parse(text).body
+    unexplained: list[str] = []
+    for place, item in enumerate(body):
+        if not isinstance(item, ast.Assign | ast.AnnAssign) or item.value is None:
+            continue
+        if all(number in _PLAIN_NUMBERS for number in list_numbers(item.value)):
+            continue
+        last = place
+        while last + 1 < len(body) and body[last + 1].lineno == (body[last].end_lineno or 0) + 1:
+            last += 1
+        has_text = any(isinstance(near, ast.Expr) for near in body[place + 1 : last + 1])
+        if not has_text and "#" not in lines[item.lineno - 1] and not lines[item.lineno - 2].startswith("#"):
+            unexplained.append(f"{label(path)}:{item.lineno}: {lines[item.lineno - 1]}")
+    return unexplained
+
+
+def test_numbers_say_where_they_come_from() -> None:
+    """Or what they are: see "Words" in CONTRIBUTING.md, by which the layout of the editor needs no reason."""
+    product = [path for path in python_files() if path.relative_to(ROOT).parts[0] in ("app", "nodes")]
+    reasoned = [path for path in product if path.relative_to(ROOT).parts[:2] != ("app", "editor")]
+    assert not [line for path in reasoned for line in find_unexplained_numbers(path)]

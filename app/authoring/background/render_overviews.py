@@ -36,6 +36,7 @@ ROLES = (
 """The roles that a layer of a render can have."""
 
 _KEPT, _KEPT_IDS = 256, 3
+"""Overviews, and pictures of ids, that are kept: one overview is a few texts, the ids of a frame are a picture."""
 
 ChosenLayers = Mapping[str, str]
 """Layers that the user chose, by role."""

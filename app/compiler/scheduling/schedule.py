@@ -50,15 +50,15 @@ def schedule(
     texels = choose_formats(program, passes, target, precision, halves)
     needed = dict.fromkeys(texels)
     emitted = [emit(program, fused, library, target, texels) for fused in passes]
-    finder = PassFingerprints(program, library, target, texels)
-    fingerprints = tuple(map(finder.of, passes))
+    fingerprints = tuple(map(PassFingerprints(program, library, target, texels).of, passes))
     keys = find_keys(program, fingerprints, needed)
     first, last = _find_lifetimes(program, passes)
     slots, sizes = _assign_slots(program, needed, texels, first, last)
     numbers = {ref: number for number, ref in enumerate(needed)}
     pixel_aspects = find_pixel_aspects(program.ops)
-    surfaces = tuple(
-        Surface(
+
+    def make_surface(ref: Ref) -> Surface:
+        return Surface(
             keys[ref],
             program.ops[ref.op].owner,
             program.size_on_device(ref),
@@ -72,11 +72,10 @@ def schedule(
             program.shape(ref).size,
             pixel_aspects.get(ref, 1.0),
         )
-        for ref in needed
-    )
+
     plan = Plan(
         target,
-        surfaces,
+        tuple(map(make_surface, needed)),
         tuple(_find_uploads(program, numbers)),
         tuple(_make_pass(program, fused, item, numbers, library) for fused, item in zip(passes, emitted, strict=True)),
         MappingProxyType({name: numbers[ref] for name, ref in program.outputs.items()}),

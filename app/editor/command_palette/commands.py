@@ -102,6 +102,25 @@ def explain_disabled(context: PaletteContext, action: ListedAction) -> str:
 
 def _all(context: PaletteContext) -> Iterator[Command]:
     """Every command. A weight below 0 puts what is rarely meant behind commands that match a text as well."""
+    yield from _list_actions(context)
+    yield from _list_additions(context)
+    for path in preset_paths():
+        name = _head(spell_out(path.stem), name_preset)
+        opens, adds = partial(context.documents.open_preset, path), partial(_add_preset, context, path)
+        yield Command(
+            f"preset {path.stem}", translate("Open Preset {name}", name=name), translate("Preset"), opens, weight=-4.0
+        )
+        yield Command(
+            f"group {path.stem}", translate("Add Preset {name}", name=name), translate("Preset"), adds, weight=-5.0
+        )
+    for id, item in context.session.graph.nodes.items():
+        kind = translate("Group", "element") if isinstance(item, Group) else translate("Node")
+        yield Command(
+            f"go {id}", translate("Go to {id}", id=id), kind, partial(_go, context, ElementId(id)), weight=-6.0
+        )
+
+
+def _list_actions(context: PaletteContext) -> Iterator[Command]:
     for action in context.actions.all:
         label = translate(action.label).removesuffix("...")
         menu = [translate(name, "menu") for name in action.menu.split("/")]
@@ -115,6 +134,10 @@ def _all(context: PaletteContext) -> Iterator[Command]:
             translate(action.doc),
             explain_disabled(context, action),
         )
+
+
+def _list_additions(context: PaletteContext) -> Iterator[Command]:
+    """The commands that add a node."""
     for id, type in context.session.types.items():
         yield Command(
             f"add {id}",
@@ -137,20 +160,6 @@ def _all(context: PaletteContext) -> Iterator[Command]:
     for entry in code_entries():
         yield Command(
             f"add {entry.id}", translate("Add Code"), translate("Code"), partial(_add, context, entry.id), doc=entry.doc
-        )
-    for path in preset_paths():
-        name = _head(spell_out(path.stem), name_preset)
-        opens, adds = partial(context.documents.open_preset, path), partial(_add_preset, context, path)
-        yield Command(
-            f"preset {path.stem}", translate("Open Preset {name}", name=name), translate("Preset"), opens, weight=-4.0
-        )
-        yield Command(
-            f"group {path.stem}", translate("Add Preset {name}", name=name), translate("Preset"), adds, weight=-5.0
-        )
-    for id, item in context.session.graph.nodes.items():
-        kind = translate("Group", "element") if isinstance(item, Group) else translate("Node")
-        yield Command(
-            f"go {id}", translate("Go to {id}", id=id), kind, partial(_go, context, ElementId(id)), weight=-6.0
         )
 
 

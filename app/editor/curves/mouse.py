@@ -222,21 +222,8 @@ class CurvesMouse:
                 context.interface.dragging = True
                 context.session.time.seek(at[0])
             case KeyMove():
-                if not gesture.started and not self._is_dragged(frame):
-                    return
-                self.gesture = gesture = replace(gesture, started=True)
-                snap = state.snap != (io.key_shift and frame.is_sheet)
-                curves = not frame.is_sheet and not contains(frame.bar, self._pressed)
-                change = gesture.change(
-                    at,
-                    snap,
-                    lambda port: find_limits(frame.graph, port),
-                    across=not (curves and io.key_ctrl),
-                    up=curves and not io.key_shift,
-                )
-                self._set_keys(
-                    frame, change, translate("Move {keys}", keys=commands.describe_keys(gesture.spots)), gesture.merge
-                )
+                if gesture.started or self._is_dragged(frame):
+                    self._move_keys(frame, io, gesture)
             case KeyScale():
                 if self._is_dragged(frame):
                     change = gesture.change(at[0], state.snap != io.key_shift)
@@ -255,6 +242,23 @@ class CurvesMouse:
                 )
             case _:
                 pass
+
+    def _move_keys(self, frame: CurvesFrame, io: imgui.IO, gesture: KeyMove) -> None:
+        """Move keys to the pointer: along one axis of the curves with Ctrl or Shift, off the grid with Shift in the
+        sheet.
+        """
+        self.gesture = gesture = replace(gesture, started=True)
+        curves = not frame.is_sheet and not contains(frame.bar, self._pressed)
+        change = gesture.change(
+            frame.from_screen(),
+            frame.state.snap != (io.key_shift and frame.is_sheet),
+            lambda port: find_limits(frame.graph, port),
+            across=not (curves and io.key_ctrl),
+            up=curves and not io.key_shift,
+        )
+        self._set_keys(
+            frame, change, translate("Move {keys}", keys=commands.describe_keys(gesture.spots)), gesture.merge
+        )
 
     def _set_keys(self, frame: CurvesFrame, change: KeyEdit, label: str, merge: str) -> None:
         context, state = frame.context, frame.state

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 
 from halation.nodes import Value
@@ -47,6 +48,14 @@ def _linear(manager: ColorManager) -> tuple[str, ...]:
 
 def color_rows(rows: Rows, fields: Fields) -> None:
     """Draw the rows of a graph's color settings."""
+    _config_row(rows, fields)
+    usable = find_color_manager(rows.context)
+    if fault := rows.context.coloring.fault:
+        rows.field_note(fault, rows.palette.error)
+    _working_space_row(rows, fields, (translate(_REC709), *_linear(usable)))
+
+
+def _config_row(rows: Rows, fields: Fields) -> None:
     context = rows.context
     session = context.session
     color = session.root.settings.color
@@ -83,16 +92,18 @@ def color_rows(rows: Rows, fields: Fields) -> None:
         elif index is not None:
             config = "" if index == 0 else choices[index]
             rows.act(lambda: session.apply(SetColorSettings(config=config)))
-    usable = find_color_manager(context)
-    if fault := context.coloring.fault:
-        rows.field_note(fault, rows.palette.error)
+
+
+def _working_space_row(rows: Rows, fields: Fields, spaces: Sequence[str]) -> None:
+    """Draw the row of the working space. The first of `spaces` stands for the default."""
+    session = rows.context.session
+    color = session.root.settings.color
     rows.name(
         "working space",
         translate("working space", "value"),
         doc=translate("The linear color space of pictures between nodes"),
         changed=bool(color.working),
     )
-    spaces = (translate(_REC709), *_linear(usable))
     index = choose(fields, "working space", color.working or spaces[0], spaces, rows.field())
     rows.record("working space")
     if index is not None:

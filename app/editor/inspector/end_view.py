@@ -73,6 +73,14 @@ class EndView:
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
+    def _missing(self, rows: Rows, port: Port, end: Input) -> None:
+        key = f"{port} missing"
+        rows.name(key, translate("missing", "value"), doc=translate("What to show at a frame that has no file"))
+        index = choose(self._fields, key, name_choice(end.missing), name_choices(MISSING), rows.field())
+        rows.record(key)
+        if index is not None:
+            rows.act(lambda: rows.context.session.apply(SetInput(port.socket, missing=MISSING[index])))
+
     def _input(self, rows: Rows, port: Port, end: Input) -> None:
         context, name, key = rows.context, port.socket, str(port)
         session = context.session
@@ -105,17 +113,7 @@ class EndView:
         if end.kind.is_color:
             self._space(rows, port, end, bool(bound))
         if Pattern.parse(end.file):
-            rows.name(
-                f"{key} missing",
-                translate("missing", "value"),
-                doc=translate("What to show at a frame that has no file"),
-            )
-            index = choose(
-                self._fields, f"{key} missing", name_choice(end.missing), name_choices(MISSING), rows.field()
-            )
-            rows.record(f"{key} missing")
-            if index is not None:
-                rows.act(lambda: session.apply(SetInput(name, missing=MISSING[index])))
+            self._missing(rows, port, end)
         rows.name(
             f"{key} default",
             translate("default", "value"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Literal
 
 from halation.nodes import Plain
@@ -30,6 +31,7 @@ from .rows import DIAMOND_WIDTH
 if TYPE_CHECKING:
     from ...authoring.session import Session
     from .applying import Ports
+    from .context import InspectorContext
     from .rows import Rows
 
 Look = Literal["still", "keys", "key", "expression"]
@@ -72,6 +74,18 @@ def spoken(value: Plain) -> str:
     if isinstance(value, bool | str):
         return value if isinstance(value, str) else "on" if value else "off"
     return "  ".join(f"{part:.5g}" for part in (value if isinstance(value, tuple) else (value,)))
+
+
+def _remove_animation(session: Session, ports: Ports) -> None:
+    label = translate("Remove animation of {socket}", socket=ports[0].socket)
+    session.apply(AnimateValues(dict.fromkeys(ports), label))
+
+
+def _jump(context: InspectorContext, frame: int | None) -> None:
+    """Show a frame, if there is one."""
+    if frame is not None:
+        context.timeline.stop()
+        context.session.time.seek(frame)
 
 
 def toggle(session: Session, ports: Ports) -> None:
@@ -195,43 +209,35 @@ class Keying:
         context, port = rows.context, ports[0]
         session, look = context.session, look_of(context.session, ports[0])
         is_single, keyed = len(ports) == 1, look in ("keys", "key")
+        before, after = session.time.find_previous_key(port), session.time.find_next_key(port)
+        remove = partial(_remove_animation, session, ports)
 
         def entry(icon: str, label: str, enabled: bool, act: Callable[[], object]) -> None:
             if imgui.menu_item(make_label(f"{icon}  {translate(label)}", label), "", False, enabled)[0]:
                 rows.act(act)
             context.places[f"menu {label}"] = item_rect()
 
-        def all_still() -> None:
-            session.apply(
-                AnimateValues(dict.fromkeys(ports), translate("Remove animation of {socket}", socket=ports[0].socket))
-            )
-
-        def jump(frame: int | None) -> None:
-            if frame is not None:
-                context.timeline.stop()
-                session.time.seek(frame)
-
         imgui.separator()
         entry(icons.ICON_FA_DIAMOND, mark("Set Key"), look in ("still", "keys"), lambda: toggle(session, ports))
         entry(icons.ICON_FA_MINUS, mark("Remove Key"), look == "key", lambda: toggle(session, ports))
-        entry(icons.ICON_FA_ERASER, mark("Remove All Keys"), keyed, all_still)
+        entry(icons.ICON_FA_ERASER, mark("Remove All Keys"), keyed, remove)
         entry(
             icons.ICON_FA_CHEVRON_LEFT,
             mark("Previous Key"),
-            keyed and session.time.find_previous_key(port) is not None,
-            lambda: jump(session.time.find_previous_key(port)),
+            keyed and before is not None,
+            lambda: _jump(context, before),
         )
         entry(
             icons.ICON_FA_CHEVRON_RIGHT,
             mark("Next Key"),
-            keyed and session.time.find_next_key(port) is not None,
-            lambda: jump(session.time.find_next_key(port)),
+            keyed and after is not None,
+            lambda: _jump(context, after),
         )
         imgui.separator()
         entry(
             icons.ICON_FA_SUPERSCRIPT, mark("Expression..."), is_single, lambda: self.begin(session, port, field_text)
         )
-        entry(icons.ICON_FA_XMARK, mark("Remove Expression"), look == "expression", all_still)
+        entry(icons.ICON_FA_XMARK, mark("Remove Expression"), look == "expression", remove)
         entry(
             icons.ICON_FA_BARS_STAGGERED,
             mark("Bake to Keys"),

@@ -198,12 +198,7 @@ class RenderQueueView:
             _Button(icons.ICON_FA_FOLDER_OPEN, "open folder", translate("Show {folder}", folder=folder), show)
         )
         if not over:
-            doc = (
-                translate("Remove it from the queue")
-                if export.state == "waiting"
-                else translate("Stop it. Finished frames are kept.")
-            )
-            buttons.append(_Button(icons.ICON_FA_XMARK, "cancel", doc, export.cancel))
+            buttons.append(_make_cancel_button(export))
         return buttons
 
     def _draw_compare_menu(self, index: int, export: QueuedRender) -> None:
@@ -298,6 +293,15 @@ class RenderQueueView:
 
     def _toggle_notes(self, export: QueuedRender) -> None:
         self._open ^= {export}
+
+
+def _make_cancel_button(export: QueuedRender) -> _Button:
+    doc = (
+        translate("Remove it from the queue")
+        if export.state == "waiting"
+        else translate("Stop it. Finished frames are kept.")
+    )
+    return _Button(icons.ICON_FA_XMARK, "cancel", doc, export.cancel)
 
 
 def _play(context: RendersContext, export: QueuedRender) -> None:

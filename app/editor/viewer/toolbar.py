@@ -117,14 +117,6 @@ def _tools(context: ViewerContext, asked_view: str, is_data: bool) -> list[_View
     )
     if not is_data or viewer.meaning == "image":  # other data is shown as it is
         tools += _brightness(context)
-    framing = [
-        _action(context, icons.ICON_FA_EXPAND, "viewer.fit", apart=True),
-        _action(context, "1:1", "viewer.actual"),
-    ]
-    if viewer.pixel_aspect != 1.0:
-        framing.append(_action(context, icons.ICON_FA_ARROWS_LEFT_RIGHT, "viewer.unsqueeze"))
-    if has_overscan(context):
-        framing.append(_action(context, icons.ICON_FA_OBJECT_UNGROUP, "viewer.overscan"))
     tools += [
         _menu(
             context,
@@ -136,7 +128,31 @@ def _tools(context: ViewerContext, asked_view: str, is_data: bool) -> list[_View
             more=lambda: _proxy_while_dragging(context),
         ),
         _action(context, icons.ICON_FA_PLAY if viewer.paused else icons.ICON_FA_PAUSE, "viewer.pause"),
-        *framing,
+        *_framing(context),
+        *_inspection(context),
+    ]
+    if not is_data or viewer.meaning == "image":
+        tools.append(_view(context, asked_view))
+    return tools
+
+
+def _framing(context: ViewerContext) -> list[_ViewerTool]:
+    """Which part of the picture is shown, and how large."""
+    tools = [
+        _action(context, icons.ICON_FA_EXPAND, "viewer.fit", apart=True),
+        _action(context, "1:1", "viewer.actual"),
+    ]
+    if context.viewer.pixel_aspect != 1.0:
+        tools.append(_action(context, icons.ICON_FA_ARROWS_LEFT_RIGHT, "viewer.unsqueeze"))
+    if has_overscan(context):
+        tools.append(_action(context, icons.ICON_FA_OBJECT_UNGROUP, "viewer.overscan"))
+    return tools
+
+
+def _inspection(context: ViewerContext) -> list[_ViewerTool]:
+    """What shows and keeps more of the picture than its colors."""
+    viewer = context.viewer
+    return [
         _menu(
             context,
             icons.ICON_FA_TRIANGLE_EXCLAMATION,
@@ -156,9 +172,6 @@ def _tools(context: ViewerContext, asked_view: str, is_data: bool) -> list[_View
             lit=viewer.background != "checker",
         ),
     ]
-    if not is_data or viewer.meaning == "image":
-        tools.append(_view(context, asked_view))
-    return tools
 
 
 def _action(context: ViewerContext, icon: str, id: str, apart: bool = False) -> _ViewerTool:

@@ -24,6 +24,7 @@ def with_hue(color: Array, turn: Array) -> Array:
     return mix(smallest(color), largest(color), share)
 
 
+# The matrices of AgX (Troy Sobotka, 2022) in Eary Chow's Rec.2020 version, as Blender 4 and 5 have it.
 REC709_TO_REC2020 = np.array(
     [
         [0.627403896, 0.329283038, 0.043313066],
