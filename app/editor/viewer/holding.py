@@ -237,8 +237,7 @@ class MouseHold:
         match self.aim.kind:
             case "pan" | "matte":
                 if by != (0.0, 0.0) and self.moved:
-                    moved = sight.pan_by(*by)
-                    viewer.zoom, viewer.pan = moved.zoom, moved.pan
+                    viewer.zoom, viewer.pan = (moved := sight.pan_by(*by)).zoom, moved.pan
             case "handle" if self.moved:
                 self._move_grip(sight, (x + self.offset[0], y + self.offset[1]), is_free, is_constrained)
             case _ if self.aim.lamp is not None and self.moved:
