@@ -22,7 +22,7 @@ MAX_CHUNK = 1000
 """Frames of a chunk at most: of frames that cost nothing, since a message must stay small. A choice."""
 
 DISPATCH_SECONDS = 0.005
-"""Seconds that sender and scheduler take for a chunk, the slower of both, rounded up: `tests/bench/cluster.py costs`
+"""Seconds that sender and scheduler take for a chunk, the slower of both, rounded up: `tests/bench/cluster.py check`
 measures it. Half of it lets a thousand workers wait for the scheduler, twice of it makes the end less even."""
 
 MAX_ATTEMPTS = 3

@@ -25,8 +25,8 @@ _REPORT_INTERVAL = 0.25
 """Seconds between two messages about finished frames: a bar needs no more."""
 
 _REPORTS_PER_SECOND = 200
-"""Such messages from all workers together: each takes the scheduler and the sender some tenths of a millisecond, which
-`tests/bench/cluster.py costs` measures. A thousand workers would send four thousand."""
+"""Such messages from all workers together: each takes the scheduler and the sender some tenths of a millisecond, by
+estimate. A thousand workers would send four thousand."""
 
 _OWN_MEMORY = 512 << 20
 """Bytes that Python, driver and decoders take besides the pictures: about 400 MB, measured with Mesa 22.3."""

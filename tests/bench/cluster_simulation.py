@@ -20,7 +20,7 @@ from halation.cluster.worker_task import find_report_interval
 
 @dataclass(frozen=True)
 class ClusterCosts:
-    """What things take, in seconds and bytes; `tests/bench/cluster.py costs` measures the first three."""
+    """What things take, in seconds and bytes; `tests/bench/cluster.py check` measures the first two together."""
 
     sender: float = 0.002
     """A chunk, on the machine that sends the job."""

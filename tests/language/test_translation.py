@@ -20,6 +20,7 @@ from halation.language.translation import mark, translate, translate_plural, use
 def french() -> Iterator[None]:
     """A catalogue of three texts, made and read by libraries."""
     catalog = Catalog(locale="fr")
+    catalog.mime_headers = [("Plural-Forms", "nplurals=2; plural=(n > 1);")]  # newer versions of Babel have a third
     catalog.add("Open {name}", "Ouvrir {name}")
     catalog.add("view", "vue", context="value")
     catalog.add(("{count} node", "{count} nodes"), ("{count} nœud", "{count} nœuds"))
