@@ -25,6 +25,8 @@ def port(text: str) -> Port:
 
 
 GAIN, LIGHTS = port("gain.gain"), port("lamps.lights")
+POINTS = Port("masks", "shapes.shape_1.points")
+CORNERS = tuple((float(x), float(y), *(0.0,) * 5) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1)))
 CODE = "float f(float a, float k /* = 1 */) { return a * k; }"
 EXAMPLES: dict[type[EditCommand], Callable[[Session, Path], EditCommand]] = {
     c.AddNode: lambda s, p: c.AddNode("soften", (5.0, 6.0), port("n1.out")),
@@ -62,6 +64,8 @@ EXAMPLES: dict[type[EditCommand], Callable[[Session, Path], EditCommand]] = {
     c.HideControl: lambda s, p: c.HideControl("strength"),
     c.RenameControl: lambda s, p: c.RenameControl("strength", "power"),
     c.DescribeControl: lambda s, p: c.DescribeControl("strength", "Strength", "How much."),
+    c.MovePoints: lambda s, p: c.MovePoints(POINTS, CORNERS, "Move points"),
+    c.ChangePoints: lambda s, p: c.ChangePoints(POINTS, lambda points: points[1:], "Remove a point"),
     c.SetKey: lambda s, p: c.SetKey(GAIN),
     c.RemoveKey: lambda s, p: c.RemoveKey(port("n0.gain")),
     c.ToggleKey: lambda s, p: c.ToggleKey(GAIN),
@@ -125,8 +129,10 @@ def session(tmp_path: Path) -> Session:
     session = Session(types, sandbox=UNRESTRICTED)
     graph = chain(3).add("gain", TOYS["gain"]()).add("blend", TOYS["blend"]()).add("render", types["read_render"]())
     graph = graph.connect(port("n0.out"), port("blend.first")).connect(port("n0.out"), port("blend.second"))
-    graph = graph.add("soften", TOYS["soften"]()).add(
-        "lamps", TOYS["lamps"](lights=number_lights([Light(), Light(intensity=2.0)]))
+    graph = (
+        graph.add("masks", types["roto"]())
+        .add("soften", TOYS["soften"]())
+        .add("lamps", TOYS["lamps"](lights=number_lights([Light(), Light(intensity=2.0)])))
     )
     session.apply(c.ReplaceGraph("Start", dataclasses.replace(graph, folder=str(tmp_path))))
     session.apply(c.SetValue(GAIN, 0.75))

@@ -290,6 +290,8 @@ TESTED_ELSEWHERE = {
     commands.AddGroupFile,
     commands.AddMatte,
     commands.AnimateValues,
+    commands.ChangePoints,
+    commands.MovePoints,
     commands.ReplaceDocument,
     commands.DropFiles,
     commands.LinkCodeFile,
@@ -297,7 +299,7 @@ TESTED_ELSEWHERE = {
     commands.ReplaceGraph,
     commands.SetValues,
 }
-"""Commands that need files, or that others are made of."""
+"""Commands that need files or splines, or that others are made of."""
 
 
 def test_every_command_takes_part():
