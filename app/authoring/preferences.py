@@ -18,6 +18,7 @@ from ..errors import OutputError, UsageError
 from ..language.translation import translate
 from ..resources.atomic_write import write_text_atomically
 from ..resources.sandbox import UNRESTRICTED
+from ..resources.typed_data import convert_data
 from ..resources.user_folders import PREFERENCES, state_folder
 from .recovery.file_locks import hold_lock
 
@@ -262,7 +263,7 @@ class PreferenceStore:
 
 def _check_value(name: str, value: Any) -> Any:
     """A value converted to the type of its field. Raises ValidationError or ValueError."""
-    converted = msgspec.convert(msgspec.to_builtins(value, enc_hook=dict), TYPES[name])
+    converted = convert_data(msgspec.to_builtins(value, enc_hook=dict), TYPES[name])
     return CHECKS[name](converted) if name in CHECKS else converted
 
 

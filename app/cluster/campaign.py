@@ -11,11 +11,12 @@ from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, Any, Protocol, cast
 from uuid import uuid4
 
-from msgspec import Struct, convert, field
+from msgspec import Struct, field
 from msgspec.structs import replace
 
 from ..errors import RenderError, rebuild_fault
 from ..renderer.jobs.shared_results import remove_shared_folder
+from ..resources.typed_data import convert_data
 from .assignments import MAX_ATTEMPTS, Assignment, AssignmentQueue
 from .chunk import ChunkReport, EntryOutcome, FileMark, FrameChunk, StageReport
 from .staged_assignments import StagedAssignments
@@ -197,7 +198,7 @@ class FrameCampaign:
             if event["kept"]:
                 self.report.kept.add(event["frame"])
             if "entry" in event:
-                self.report.entries[event["frame"]] = convert(event["entry"], EntryOutcome)
+                self.report.entries[event["frame"]] = convert_data(event["entry"], EntryOutcome)
         self._note_frames({event["frame"]: event["seconds"] for event in events})
 
     def _take_in(self, future: Future[str]) -> None:

@@ -19,6 +19,7 @@ from msgspec.structs import replace
 
 from ..errors import UsageError
 from ..resources.struct_json import read_struct, write_struct
+from ..resources.typed_data import convert_data
 from .campaign import CampaignReport, FrameCampaign
 from .chunk import FileMark, FrameChunk
 from .worker_task import make_cancel_check, read_version
@@ -141,7 +142,7 @@ class JobBoard:
             return read_struct(future.result(), JobStatus)
         facts = cast("Mapping[str, Any]", self._client.get_metadata([name], {"graph": "", "parts": 0, "unit": "frame"}))
         events = cast("Sequence[tuple[float, Any]]", self._client.get_events(name))
-        status = msgspec.convert(events[-1][1], JobStatus) if events else None
+        status = convert_data(events[-1][1], JobStatus) if events else None
         status = status or JobStatus(name, facts["graph"], "rendering", 0, facts["parts"], unit=facts["unit"])
         status = replace(status, graph=facts["graph"])
         if future.status in ("error", "cancelled", "lost"):

@@ -22,11 +22,12 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
-from msgspec import Struct, convert, field
+from msgspec import Struct, field
 
 from ..renderer.jobs.render_job import RenderJob, worker_command
 from ..resources.heartbeat import Watchdog
 from ..resources.machine import available_cores, resident_memory
+from ..resources.typed_data import convert_data
 from .chunk import ChunkReport, EntryOutcome, FrameChunk, StageReport
 
 CHECK_INTERVAL = 0.1
@@ -108,16 +109,16 @@ class RenderProcess:
             seconds[event["frame"]] = event["seconds"]
             kept.extend([event["frame"]] * bool(event["kept"]))
             if "entry" in event:
-                entries[event["frame"]] = convert(event["entry"], EntryOutcome)
+                entries[event["frame"]] = convert_data(event["entry"], EntryOutcome)
             report_frame(event)
 
         answer = self.ask(chunk.to_json(), note_frame, is_cancelled, limits)
         faults = {int(frame): fault for frame, fault in answer.facts.get("faults", {}).items()}
         entries |= {
-            int(number): convert(entry, EntryOutcome) for number, entry in answer.facts.get("entries", {}).items()
+            int(number): convert_data(entry, EntryOutcome) for number, entry in answer.facts.get("entries", {}).items()
         }
         costs, refusal = answer.facts.get("costs", {}), answer.facts.get("refusal", "")
-        stage = convert(answer.facts["stage"], StageReport, strict=False) if "stage" in answer.facts else None
+        stage = convert_data(answer.facts["stage"], StageReport, strict=False) if "stage" in answer.facts else None
         return ChunkReport(
             "", seconds, tuple(kept), faults, costs, answer.death, refusal, answer.is_cancelled, stage, entries
         )

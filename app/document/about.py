@@ -13,6 +13,7 @@ from ..errors import DocumentError
 from ..graph import Graph
 from ..resources.input_files import read_bytes
 from ..resources.sandbox import Sandbox
+from ..resources.typed_data import decode_data
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,7 @@ def read_about(path: Path, sandbox: Sandbox) -> About:
     """What a graph file says about itself, without reading its nodes. Raises InputError, and DocumentError if it is
     no graph."""
     try:
-        record = msgspec.json.decode(read_bytes(path, sandbox=sandbox), type=_PresetRecord)
+        record = decode_data(read_bytes(path, sandbox=sandbox), _PresetRecord)
     except msgspec.MsgspecError as fault:
         raise DocumentError(str(path), "", f"this is no graph: {fault}") from None
     if record.halation is None:

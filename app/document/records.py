@@ -12,6 +12,7 @@ from halation.nodes import MAX_REFERENCE_HEIGHT, Kind, Missing
 from ..errors import DocumentError
 from ..graph import Extrapolation, Interpolation
 from ..resources.picture import MAX_OVERSCAN
+from ..resources.typed_data import convert_data
 from .syntax import member
 
 Count = Annotated[int, msgspec.Meta(ge=1)]
@@ -154,7 +155,7 @@ class GroupRecord(TypeRecord):
 def convert(raw: Any, kind: type[R], file: str, path: str) -> R:
     """`raw` as a record. Raises DocumentError with the JSON path."""
     try:
-        return msgspec.convert(raw, kind)
+        return convert_data(raw, kind)
     except msgspec.ValidationError as error:
         message, _, where = str(error).partition(" - at `$")
         fault = re.sub("`([^`]*)`", lambda match: _plain(match[1]), message[:1].lower() + message[1:])

@@ -17,6 +17,7 @@ from ..cluster.render_process import ProcessLimits, share_cores
 from ..cluster.worker_task import find_worker, make_cancel_check, open_pool, read_memory_limit, read_version
 from ..cluster.workers import WorkerRoster
 from ..errors import RenderError
+from ..resources.typed_data import convert_data
 from .case_runner import RunOptions
 from .cases import Case
 from .parallel import run_in_worker
@@ -74,8 +75,8 @@ def run_suite_case(text: str) -> str:
 def run_case_text(line: str) -> dict[str, Any]:
     """Run the case in a line of `run_suite_case`, in this process; its result, ready for JSON."""
     facts = json.loads(line)
-    case = msgspec.convert(facts["case"], Case, dec_hook=_read_path)
-    options = msgspec.convert(facts["options"], RunOptions, dec_hook=_read_path)
+    case = convert_data(facts["case"], Case, hook=_read_path)
+    options = convert_data(facts["options"], RunOptions, hook=_read_path)
     return cast("dict[str, Any]", msgspec.to_builtins(run_in_worker(case, options), enc_hook=str))
 
 
@@ -92,7 +93,7 @@ def _read_result(case: Case, text: str) -> CaseResult:
     facts = json.loads(text)
     if "death" in facts:
         return CaseResult(Outcome(case, "failed", f"on {_TRIES} tries: {facts['death']}"), "", True)
-    loaded = msgspec.convert(facts, CaseResult, dec_hook=_read_path)
+    loaded = convert_data(facts, CaseResult, hook=_read_path)
     return replace(loaded, outcome=replace(loaded.outcome, case=case))
 
 

@@ -8,6 +8,7 @@ from typing import TypeVar
 import msgspec
 
 from ..errors import UsageError
+from .typed_data import convert_data
 
 T = TypeVar("T")
 
@@ -22,7 +23,7 @@ def read_struct(text: str | bytes, type: type[T], *, strict: bool = True) -> T:
 
     Raises ValueError or RecursionError for any other text.
     """
-    return msgspec.convert(json.loads(text), type, strict=strict)
+    return convert_data(json.loads(text), type, strict=strict)
 
 
 def parse_struct(text: str | bytes, type: type[T], refusal: str) -> T:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from ..errors import UsageError
+from ..resources.typed_data import convert_data, decode_data
 
 if TYPE_CHECKING:
     import numpy as np
@@ -56,7 +57,7 @@ def read_pictures(line: bytes, array_file: ArrayFile | None = None) -> dict[str,
     `array_file` is where their pixels are, if they are not in the line.
     """
     try:
-        reply = msgspec.json.decode(line, type=_PictureReply)
+        reply = decode_data(line, _PictureReply)
     except (msgspec.DecodeError, UnicodeDecodeError):
         return None
     return {name: _make_array(packed, array_file) for name, packed in reply.pictures.items()}
@@ -65,7 +66,7 @@ def read_pictures(line: bytes, array_file: ArrayFile | None = None) -> dict[str,
 def unpack_array(name: str, packed: Mapping[str, Any], array_file: ArrayFile | None = None) -> np.ndarray:
     """The array in a part of a message that was read from JSON. Raises UsageError."""
     try:
-        return _make_array(msgspec.convert(packed, _PackedArray), array_file)
+        return _make_array(convert_data(packed, _PackedArray), array_file)
     except ValueError as fault:
         raise UsageError(
             f"input '{name}': this is not an array ({fault}): write shape, type (float16 or float32) and pixels as "

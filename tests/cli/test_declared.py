@@ -155,6 +155,7 @@ OPTIONAL = {
     "av": "the extra 'video'",
     "cma": "the extra 'fit'",
     "scipy": "the extra 'fit'",
+    "dask": "the extra 'cluster'",
     "distributed": "the extra 'cluster'",
     "pyoidn": "the extra 'denoise'",
     "pytest": "the plug-in of pytest, which loads it",

@@ -25,6 +25,7 @@ from ...graph import Graph
 from ...language.translation import translate
 from ...resources.atomic_write import find_temporary_files, write_text_atomically
 from ...resources.sandbox import UNRESTRICTED, Sandbox
+from ...resources.typed_data import decode_data
 from .claims import DocumentClaim
 from .file_locks import is_held, lock
 
@@ -246,7 +247,7 @@ def _plain(path: Path) -> str:
 def _read(file: Path) -> RecoveredWork:
     """The work in a recovery file; a broken one has a `fault`."""
     try:
-        record = msgspec.json.decode(read_text(file, sandbox=UNRESTRICTED), type=_Record)
+        record = decode_data(read_text(file, sandbox=UNRESTRICTED), _Record)
     except (DocumentError, msgspec.MsgspecError, UnicodeDecodeError) as fault:
         return RecoveredWork(
             file, fault=translate("{file}: this recovered work cannot be read ({fault})", file=file, fault=fault)

@@ -16,7 +16,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path, PurePath
 from typing import Any
 
-import msgspec
 from msgspec import Struct, field
 
 from ...errors import HalationError, InputError, UsageError
@@ -25,6 +24,7 @@ from ...media import PICTURE_ENDINGS
 from ...resources.folders import find_matches
 from ...resources.input_files import open_file
 from ...resources.sandbox import Sandbox
+from ...resources.typed_data import convert_data
 from .render_entry import RenderEntry
 
 STANDARD_INPUT = "-"
@@ -149,7 +149,7 @@ def _parse_lines(text: str) -> Iterator[_Line]:
             continue
         try:
             parsed = json.loads(line)
-            yield _Line(parsed) if isinstance(parsed, str) else msgspec.convert(parsed, _Line)
+            yield _Line(parsed) if isinstance(parsed, str) else convert_data(parsed, _Line)
         except (ValueError, RecursionError) as fault:
             raise UsageError(
                 f'--each -: line {number} of standard input is invalid ({fault}): write {{"file": "a.png"}}, and '
