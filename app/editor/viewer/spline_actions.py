@@ -54,7 +54,7 @@ def _list_nudges() -> tuple[Action[ViewerContext], ...]:
         )
         for keys, suffix, pixels, doc in (
             ("Alt", "", 1.0, mark("Move the selected points of the selected shape by a pixel.")),
-            ("Alt+Shift", "_far", _FAR, mark("Move the selected points of the selected shape by ten pixels.")),
+            ("Shift+Alt", "_far", _FAR, mark("Move the selected points of the selected shape by ten pixels.")),
         )
         for name, label, key, way in _NUDGES
     )
@@ -77,7 +77,7 @@ SPLINE_ACTIONS: tuple[Action[ViewerContext], ...] = (
         "Copy Points",
         copy_points,
         "Viewer/Shapes",
-        "Ctrl+C",
+        "Ctrl+Shift+C",
         "viewer",
         _has_shape,
         doc="Copy the selected points of the selected shape, or all of them, as they are at this frame.",
@@ -87,7 +87,7 @@ SPLINE_ACTIONS: tuple[Action[ViewerContext], ...] = (
         "Paste Points",
         paste_points,
         "Viewer/Shapes",
-        "Ctrl+V",
+        "Ctrl+Shift+V",
         "viewer",
         can_paste_points,
         doc="Set the copied points at this frame. Where points have keys, this sets a key.",

@@ -23,6 +23,7 @@ from halation.editor.viewer.picking import ports_of, title
 from halation.editor.viewer.state import ViewerState
 from halation.editor.viewer.wanted import list_wanted_ports
 from halation.graph import Graph, Output, Port
+from halation.inputs.provider import MediaProvider
 from halation.nodes import Kind
 from halation.renderer.viewing.look import Look
 from halation.resources.sandbox import UNRESTRICTED
@@ -107,6 +108,11 @@ def editor() -> Any:
         session=Session(sandbox=UNRESTRICTED),
         viewer=ViewerState(),
         interface=SimpleNamespace(dragging=False),
+        preview=SimpleNamespace(
+            renderer=SimpleNamespace(pictures=MediaProvider(sandbox=UNRESTRICTED)),
+            memory=(0, 2**29),
+            find_visible_image=lambda side: None,
+        ),
         store=SimpleNamespace(current=SimpleNamespace(proxy_while_dragging=True)),
     )
 
