@@ -153,6 +153,7 @@ def test_what_does_not_change_is_not_drawn(window: Window) -> None:
     boxes: list[tuple[int, int, int, int]] = []
 
     def steps(window: Window) -> Iterator[bool]:
+        yield from settle(window)
         point(window, "Graph", 0.0, 150.0)
         yield from settle(window)
         point(window, "title exposure")

@@ -15,6 +15,7 @@ from gui_screens import SCREENS, write_many_things
 from halation.editor.window import appearance
 from halation.export.kinds import KINDS
 from halation.language.translation import translate, use_language, use_texts
+from halation.presets import paths
 from pseudo_language import PseudoTexts
 
 SIZE = (1366, 768)
@@ -79,10 +80,14 @@ def split(text: str) -> set[str]:
 
 
 def collect_names(ui: Ui, place: Path) -> set[str]:
-    """The words of the document, of its files and their layers, and of this machine: they belong to the user."""
+    """The words of the document, of its files and their layers, and of this machine: they belong to the user.
+
+    So do names of presets, by which commands know them.
+    """
     root = ui.session.root
     texts = [ui.session.name, platform.platform(), *(str(facts) for facts in root.ui.values())]
     texts += [*root.nodes, *root.inputs, *root.outputs, *root.controls, *(end.doc for end in root.inputs.values())]
+    texts += [path.stem for path in paths()]
     for file in place.rglob("*.exr"):
         picture, part = oiio.ImageInput.open(str(file)), 0
         while picture is not None and picture.seek_subimage(part, 0):
