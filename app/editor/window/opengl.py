@@ -21,13 +21,18 @@ _NO_WINDOW = mark(
 )
 
 
+def has_visible_window() -> bool:
+    """False where HALATION_WINDOW=none: windows are then opened without a display, for tests."""
+    return os.environ.get("HALATION_WINDOW") != "none"
+
+
 def best_version() -> tuple[int, int]:
     """The newest OpenGL of ours that a window here can have. Raises DeviceError.
 
     A refused version would spoil every later attempt of the window library in this process, so a hidden window is
-    asked first. HALATION_WINDOW=none opens windows without a display, for tests.
+    asked first.
     """
-    visible = os.environ.get("HALATION_WINDOW") != "none"
+    visible = has_visible_window()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         if not (glfw.init() if visible else needs_no_display()):

@@ -14,6 +14,7 @@ from ... import document
 from ...authoring.preferences import PreferenceStore, state_folder
 from ...media.pictures.file_endings import is_picture
 from ...resources.sandbox import Sandbox
+from .opengl import has_visible_window
 from .window import Window
 
 
@@ -36,8 +37,8 @@ def open_window(
     action = f"lesson.{lesson}" if lesson else ""
     window = Window(path, bindings, sandbox, first_action=action, version=version, state=state, on_shown=on_shown)
     keep_layout(window.params, state)
-    is_visible = os.environ.get("HALATION_WINDOW") != "none"
-    window.params.imgui_window_params.enable_viewports = is_visible and PreferenceStore(state).current.separate_windows
+    separates = has_visible_window() and PreferenceStore(state).current.separate_windows
+    window.params.imgui_window_params.enable_viewports = separates
     with _close_on_signals(window) as signals:
         run(window)
     if signal.SIGINT in signals:

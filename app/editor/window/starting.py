@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
 from importlib import import_module
 from pathlib import Path
 from threading import Thread
 
 from ...resources.sandbox import Sandbox
-from .opengl import best_version
+from .opengl import best_version, has_visible_window
 from .splash import Splash
 
 
@@ -22,7 +21,7 @@ def start_editor(path: Path | None, bindings: Mapping[str, str], sandbox: Sandbo
     loading = Thread(target=import_module, args=(".opening", __package__), name="loading", daemon=True)
     loading.start()  # most of a start are imports: they go on while the system opens a window
     version = best_version()
-    splash = Splash(version) if os.environ.get("HALATION_WINDOW") != "none" else None
+    splash = Splash(version) if has_visible_window() else None
     if splash is not None:
         splash.follow(loading)
     loading.join()
