@@ -8,6 +8,7 @@ and helper processes have the same, and a render job that goes to another machin
 from __future__ import annotations
 
 import os
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -83,5 +84,9 @@ def _is_of_presets(path: str | Path) -> bool:
 
 
 def make_path_printable(path: str | Path) -> str:
-    """A path as a sentence can hold it."""
-    return str(path).replace("\0", "\\0")
+    """A path as a sentence can hold it: NUL and what no name of a file is made of are spelled out.
+
+    Bytes of another encoding stay as Python keeps them, as surrogates from DC80 to DCFF.
+    """
+    text = str(path).replace("\0", "\\0")
+    return re.sub("[\ud800-\udc7f\udd00-\udfff]", lambda match: f"\\u{ord(match[0]):04x}", text)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from halation import presets
 from halation.errors import UsageError
-from halation.resources.sandbox import ROOT_VARIABLE, UNRESTRICTED, Sandbox, read_process_sandbox
+from halation.resources.sandbox import ROOT_VARIABLE, UNRESTRICTED, Sandbox, make_path_printable, read_process_sandbox
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -108,3 +108,8 @@ def test_the_environment_asks_for_one(tree: Path, monkeypatch: pytest.MonkeyPatc
     assert read_process_sandbox() is UNRESTRICTED
     monkeypatch.setenv(ROOT_VARIABLE, str(tree / "in" / "deep" / "back"))
     assert read_process_sandbox() == Sandbox(str((tree / "in").resolve()))
+
+
+def test_a_path_that_no_file_has_can_be_printed() -> None:
+    assert make_path_printable("a\0\ud800\udcff.exr") == "a\\0\\ud800\udcff.exr"
+    make_path_printable("\udc7f\udd00").encode("ascii")
