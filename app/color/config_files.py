@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
-from ..resources.input_files import check_file, fingerprint, open_file, read_bytes
+from ..resources.input_files import check_file, fingerprint, read_bytes
 from ..resources.sandbox import Sandbox
 
 _ARCHIVE = b"PK"
@@ -95,9 +95,8 @@ def _check_archive(source: str, content: bytes) -> None:
 
 
 def check_table(path: str, sandbox: Sandbox) -> None:
-    """Raise InputError for a table that OpenColorIO would read for ever."""
-    with open_file(path, sandbox) as file:
-        is_cinespace = _is_cinespace(file.read(_PROLOG))
+    """Raise InputError for a table that OpenColorIO would read for ever, or that cannot be read."""
+    is_cinespace = _is_cinespace(read_bytes(path, sandbox, _PROLOG))
     if is_cinespace and (fault := find_table_fault(read_bytes(path, sandbox))):
         raise InputError(f"{path}: {fault}")
 
@@ -129,10 +128,9 @@ def find_config_fault(config: Any, sandbox: Sandbox) -> str:
 def may_name_files(path: str, sandbox: Sandbox) -> bool:
     """True for a table that may refer to other files: one that begins like XML, whatever its name is.
 
-    Raises InputError for a special file; OSError.
+    Raises InputError.
     """
-    with open_file(path, sandbox) as file:
-        return file.read(_PROLOG).lstrip(_BLANK)[:1] in (b"<", b"")
+    return read_bytes(path, sandbox, _PROLOG).lstrip(_BLANK)[:1] in (b"<", b"")
 
 
 def make_sandboxed_files(sandbox: Sandbox) -> Any:

@@ -44,10 +44,10 @@ def _reason(error: Exception) -> str:
 
 
 def resolve_file(path: Path) -> Path | None:
-    """The file with links followed, or None if there is none."""
+    """The file with links followed, or None if there is none. What is neither file nor folder is refused when opened."""
     try:
         real = path.resolve()
-        return real if real.is_file() else None
+        return real if real.exists() and not real.is_dir() else None
     except (OSError, ValueError, RuntimeError):
         return None
 

@@ -102,11 +102,11 @@ def content_hash(path: str | Path, sandbox: Sandbox) -> str:
         raise InputError(f"{make_path_printable(path)}: cannot be read: {reason}") from error
 
 
-def read_bytes(path: str | Path, sandbox: Sandbox) -> bytes:
-    """All of a file. Raises InputError."""
+def read_bytes(path: str | Path, sandbox: Sandbox, count: int = -1) -> bytes:
+    """All of a file, or its first `count` bytes. Raises InputError."""
     try:
         with open_file(path, sandbox) as file:
-            return file.read()
+            return file.read(count)
     except FileNotFoundError:
         raise InputError(f"{make_path_printable(path)}: {_describe_missing(Path(path))}") from None
     except (OSError, ValueError) as error:

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import re
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 from random import Random
 
 import numpy as np
 import pytest
-from halation.color.config_files import MAX_NAMES
+from halation.color.config_files import MAX_NAMES, check_table, may_name_files
 from halation.color.lut_files import apply_table_file
 from halation.color.management import get_color_manager
 from halation.errors import GraphError, InputError
 from halation.nodes import ColorSettings
-from halation.resources.sandbox import UNRESTRICTED
+from halation.resources.sandbox import UNRESTRICTED, Sandbox
 
 STEPS = "2\n0 1\n0 1\n" * 3
 ROWS = "2 2 2\n" + "".join(f"{r} {g} {b}\n" for b in (0, 1) for g in (0, 1) for r in (0, 1))
@@ -134,3 +136,9 @@ def test_a_config_does_not_lead_to_an_endless_table(tmp_path: Path) -> None:
     manager = get_color_manager(ColorSettings(str(tmp_path / "b.ocio")), UNRESTRICTED)
     with pytest.raises(Exception, match=r"a\.csp"):
         manager.make_processor(manager.find("b"), manager.find("a"))
+
+
+@pytest.mark.parametrize("read", [check_table, may_name_files])
+def test_what_the_system_cannot_read_is_one_sentence(tmp_path: Path, read: Callable[[str, Sandbox], object]) -> None:
+    with pytest.raises(InputError, match=f"^{re.escape(str(tmp_path))}: cannot be read: "):
+        read(str(tmp_path), UNRESTRICTED)
