@@ -44,6 +44,12 @@ def effect(factor: float) -> Graph:
     return graph(write_product(factor))
 
 
+@pytest.fixture(autouse=True)
+def _compiles_as_for_users(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Code that is to take long is optimized; other tests leave that out."""
+    monkeypatch.delenv("GALLIVM_PERF", raising=False)
+
+
 @pytest.fixture
 def trial_process() -> TrialProcess:
     return TrialProcess(timeout=2.0)
