@@ -44,7 +44,7 @@ def _reason(error: Exception) -> str:
 
 
 def resolve_file(path: Path) -> Path | None:
-    """The file with links followed, or None if there is none. What is neither file nor folder is refused when opened."""
+    """The file with links followed, or None if there is none. What is no regular file is refused when it is opened."""
     try:
         real = path.resolve()
         return real if real.exists() and not real.is_dir() else None
