@@ -47,6 +47,12 @@ def pytest_configure(config: pytest.Config) -> None:
         os.environ.setdefault("GALLIVM_PERF", "nopt")
 
 
+@pytest.fixture
+def compiles_as_for_users(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Mesa optimizes programs, as it does for users: for tests of the time and the memory that compiling takes."""
+    monkeypatch.delenv("GALLIVM_PERF", raising=False)
+
+
 def pytest_collection_finish() -> None:
     """What has been collected stays to the end: half a million objects, which each search for garbage would visit.
 

@@ -123,8 +123,8 @@ def test_the_timeout_holds_while_code_compiles(tmp_path: Path) -> None:
     assert message.startswith("node 'user': its code has not ended after 1 seconds")
 
 
-def test_the_memory_limit_holds_while_code_compiles(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv("GALLIVM_PERF", raising=False)  # it is the optimizer, which users have, that takes memory
+@pytest.mark.usefixtures("compiles_as_for_users")  # it is the optimizer that takes memory
+def test_the_memory_limit_holds_while_code_compiles(tmp_path: Path) -> None:
     ended = render(graph(tmp_path, write_slow_code()), "-o", tmp_path / "out.exr", "--memory", "1M", "--json")
     assert ended.returncode == 5
     assert json.loads(ended.stdout)["error"]["message"].startswith("node 'user': its code takes more than 0.3 GiB")

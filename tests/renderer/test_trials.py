@@ -23,6 +23,8 @@ from halation.renderer.execution.trials import Trial, TrialProcess
 from halation.resources.sandbox import UNRESTRICTED
 from unseen_code import write_product, write_slow_code
 
+pytestmark = pytest.mark.usefixtures("compiles_as_for_users")
+
 PICTURE = np.full((8, 8, 4), 0.5, np.float32)
 REQUEST = RenderRequest({"image": PICTURE})
 SLOW = write_slow_code()
@@ -42,12 +44,6 @@ def graph(code: str) -> Graph:
 
 def effect(factor: float) -> Graph:
     return graph(write_product(factor))
-
-
-@pytest.fixture(autouse=True)
-def _compiles_as_for_users(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Code that is to take long is optimized; other tests leave that out."""
-    monkeypatch.delenv("GALLIVM_PERF", raising=False)
 
 
 @pytest.fixture
