@@ -75,30 +75,30 @@ def write_convolution_accessor(names: ShaderNames, op: Convolve, is_strip: bool)
 
 def write_convolution(names: ShaderNames, op: Convolve) -> list[str]:
     """`convolution`, one pixel of it, for fragment passes."""
-    glsl = glsl_type(names.shape(op.image).channels)
-    stride = names.uniform("int", op.stride, "stride")
-    return [
-        f"{glsl} convolution() {{",
-        f"    ivec2 p = pixel + along * (pixel * ({stride} - 1) + origin);",
-        f"    {glsl} sum = {glsl}(0.0);",
-        "    for (int j = 0; j < taps; ++j, p += along) sum += weights[j >> 2][j & 3] * image_at(p);",
-        "    return sum;",
-        "}",
-    ]
+    loop = ["    for (int j = 0; j < taps; ++j, p += along) sum += weights[j >> 2][j & 3] * image_at(p);"]
+    return _write_sum_of_taps(names, op, loop)
 
 
 def write_small_decimation(names: ShaderNames, op: Convolve) -> list[str]:
     """`convolution`, one pixel of it, for compute passes: four taps at a time share a read of weights."""
+    loop = [
+        "    for (int j = 0; j < taps; j += 4) {",
+        "        vec4 four = weights[j >> 2];",
+        *(f"        sum += four.{component} * image_at(p); p += along;" for component in "xyzw"),
+        "    }",
+    ]
+    return _write_sum_of_taps(names, op, loop)
+
+
+def _write_sum_of_taps(names: ShaderNames, op: Convolve, loop: list[str]) -> list[str]:
+    """`convolution` around a loop that adds to `sum` and moves `p` along."""
     glsl = glsl_type(names.shape(op.image).channels)
     stride = names.uniform("int", op.stride, "stride")
     return [
         f"{glsl} convolution() {{",
         f"    ivec2 p = pixel + along * (pixel * ({stride} - 1) + origin);",
         f"    {glsl} sum = {glsl}(0.0);",
-        "    for (int j = 0; j < taps; j += 4) {",
-        "        vec4 four = weights[j >> 2];",
-        *(f"        sum += four.{component} * image_at(p); p += along;" for component in "xyzw"),
-        "    }",
+        *loop,
         "    return sum;",
         "}",
     ]
