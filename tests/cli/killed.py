@@ -67,7 +67,7 @@ def main(count: int, words: list[str]) -> None:
     draw, killed, seen = random.Random(7), 0, 0
     for _ in range(count):
         child = start(render)
-        if not ended(child, draw.randint(1, 6)):
+        if not ended(child, draw.randint(1, 12)):
             time.sleep(draw.uniform(0.0, 0.004))
             os.kill(child, signal.SIGKILL)
             killed += os.WIFSIGNALED(os.waitpid(child, 0)[1])

@@ -54,6 +54,7 @@ def test_no_step_waits_for_code_that_nothing_reads(preview) -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="it lists the processes of this one")
+@pytest.mark.usefixtures("compiles_as_for_users")  # without its optimizer, the compiler is done too soon
 def test_a_compiler_that_dies_is_a_fault_of_the_node(preview) -> None:
     graph = chain(write_slow_code())
     preview.want(graph, {"A": Port("user", "out")})
