@@ -110,6 +110,8 @@ def write_node_names() -> str:
 def _link_nodes(wanted: str) -> str:
     """Links to the nodes that menu_words.py names: one with a mode, or several."""
     node, _, mode = wanted.partition(":")
+    if node in ("input", "output"):
+        return f"[{mode.lower()} {node}](format.md#inputs-and-outputs) of the graph"
     ids = node.split()
     assert set(ids) <= built_in_nodes().keys(), f"menu_words.py names a node that does not exist: {wanted}"
     return ", ".join(f"[{id}{': ' if mode else ''}{mode}](nodes.md#{id})" for id in ids)

@@ -1,14 +1,26 @@
 """Words of the menus of other programs, as they stand there, and the nodes that somebody who types them looks for.
 
 Only words are listed for which there is a node; several nodes are several that would do. `merge:multiply` is the node
-with that mode.
+with that mode, `output:Image` an output of the graph.
 """
 
 from __future__ import annotations
 
+from effect_words import RESHADE
+
 BLENDER = {
     "Image": "read_image",
     "Render Layers": "read_render",
+    "File Output": "output:Image",
+    "Composite": "output:Image",
+    "Viewer": "output:Image",
+    "Switch": "select",
+    "Brick Texture": "brick",
+    "Wave Texture": "wave",
+    "Map Range": "map_range",
+    "Vector Math": "vector_math",
+    "Bump": "height_to_normal emboss",
+    "Corner Pin": "corner_pin",
     "RGB": "constant",
     "Bokeh Blur": "depth_of_field",
     "Defocus": "depth_of_field",
@@ -27,8 +39,8 @@ BLENDER = {
     "Sun Beams": "sun_beams",
     "Alpha Over": "merge:over",
     "Mix Color": "mix_images merge",
-    "Z Combine": "depth_slice merge",
-    "Color Balance": "grade cdl",
+    "Z Combine": "depth_merge",
+    "Color Balance": "color_balance cdl",
     "Color Correction": "grade",
     "Hue/Saturation/Value": "hue_saturation",
     "RGB Curves": "curves",
@@ -73,6 +85,14 @@ NUKE = {
     "GridWarp": "grid_warp",
     "SplineWarp": "spline_warp",
     "Read": "read_image read_render",
+    "Write": "output:Image",
+    "Switch": "select",
+    "Expression": "pixel_formula math",
+    "MergeExpression": "pixel_formula",
+    "ZMerge": "depth_merge",
+    "CornerPin": "corner_pin",
+    "JoinViews": "stereo",
+    "BumpToNormal": "height_to_normal",
     "Constant": "constant",
     "CheckerBoard": "checker",
     "Ramp": "ramp",
@@ -145,6 +165,7 @@ NUKE = {
 FUSION = {
     "Grid Warp": "grid_warp",
     "Loader": "read_image read_render",
+    "Saver": "output:Image",
     "Background": "constant ramp",
     "FastNoise": "noise",
     "Plasma": "noise",
@@ -249,6 +270,7 @@ AFTER_EFFECTS = {
 
 NATRON = {
     "Read": "read_image read_render",
+    "Write": "output:Image",
     "Constant": "constant",
     "CheckerBoard": "checker",
     "Noise": "noise film_grain",
@@ -327,57 +349,6 @@ NATRON = {
     "JoinViews": "stereo",
 }
 """Natron's node groups, and the PIK and LightWrap of its community plug-ins."""
-
-RESHADE = {
-    "AdaptiveFog": "fog",
-    "AdaptiveSharpen": "cas_sharpen sharpen",
-    "BilateralBlur": "bilateral_blur",
-    "Bloom": "bloom",
-    "CRT": "crt",
-    "Cartoon": "toon",
-    "CAS": "cas_sharpen",
-    "Chromakey": "chroma_key",
-    "ChromaticAberration": "chromatic_aberration",
-    "CinematicDOF": "depth_of_field",
-    "Clarity": "sharpen local_tone_map",
-    "ColorMatrix": "color_matrix",
-    "Colourfulness": "saturation",
-    "Curves": "curves",
-    "Deband": "dither",
-    "Denoise": "denoise bilateral_blur median",
-    "DepthHaze": "fog",
-    "DOF": "depth_of_field",
-    "EdgeDetection": "edge_detect",
-    "Emboss": "emboss",
-    "EyeAdaption": "eye_adaptation",
-    "FakeHDR": "local_tone_map",
-    "FilmGrain": "film_grain",
-    "FXAA": "fxaa",
-    "GaussianBlur": "gaussian_blur",
-    "Glitch": "glitch",
-    "HeatHaze": "heat_haze",
-    "Layer": "merge",
-    "Levels": "levels",
-    "LiftGammaGain": "color_balance grade",
-    "LumaSharpen": "sharpen",
-    "LUT": "lut_file",
-    "MagicBloom": "bloom",
-    "Monochrome": "luminance saturation channel_mixer",
-    "MotionBlur": "motion_blur",
-    "MXAO": "ambient_occlusion",
-    "Outline": "outline",
-    "Pixelate": "pixelate",
-    "Prism": "chromatic_aberration",
-    "Sepia": "split_toning",
-    "SMAA": "smaa",
-    "SurfaceBlur": "bilateral_blur",
-    "TiltShift": "variable_blur",
-    "Tint": "gradient_map split_toning",
-    "Tonemap": "tone_map",
-    "Vibrance": "saturation hue_saturation",
-    "Vignette": "vignette",
-}
-"""Effects of ReShade's own repositories, by the names of their files."""
 
 PROGRAMS = (
     ("Blender", BLENDER),

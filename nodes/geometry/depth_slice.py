@@ -11,7 +11,7 @@ class DepthSlice(Pointwise):
     """
 
     aliases = (
-        "zslice", "z slice", "depth matte", "depth mask", "depth key", "z matte", "z combine", "zmerge", "z mask",
+        "zslice", "z slice", "depth matte", "depth mask", "depth key", "z matte", "z mask",
         "depth range", "isolate depth", "z depth mask",
     )  # fmt: skip
 

@@ -8,7 +8,7 @@ class MixImages(Pointwise):
 
     aliases = (
         "mix", "dissolve", "cross dissolve", "key mix", "keymix", "crossfade", "blend", "fade", "lerp", "interpolate",
-        "switch", "mix color", "wipe", "cross fade", "opacity", "transition", "split", "time dissolve", "add mix",
+        "mix color", "wipe", "cross fade", "opacity", "transition", "split", "time dissolve", "add mix",
     )  # fmt: skip
 
     a = Image()

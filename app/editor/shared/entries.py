@@ -49,6 +49,30 @@ _MODE_ALIASES: Mapping[str, tuple[str, ...]] = MappingProxyType(
 )
 """What other programs call a mode of the merge node."""
 
+_END_ALIASES: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "input": ("graph input", "placeholder", "media in", "group input"),
+        "output": (
+            "write",
+            "write node",
+            "write file",
+            "file output",
+            "file out",
+            "saver",
+            "save",
+            "save image",
+            "export",
+            "render output",
+            "composite",
+            "viewer",
+            "media out",
+            "group output",
+            "graph output",
+        ),
+    }
+)
+"""What other programs call the inputs and outputs of a graph: an output is what their write nodes are."""
+
 
 @dataclass(frozen=True)
 class CatalogEntry:
@@ -159,6 +183,7 @@ def graph_entries() -> tuple[CatalogEntry, ...]:
             f"{kind} {side}".lower(),
             GRAPH,
             doc,
+            aliases=_END_ALIASES[side],
             translated=translate(words, kind=translate(kind.lower(), "kind")),
         )
         for side, words, doc in (
