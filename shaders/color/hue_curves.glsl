@@ -1,6 +1,7 @@
 #include "lib/curve.glsl"
 #include "lib/finite.glsl"
 #include "lib/oklab.glsl"
+#include "lib/pi.glsl"
 
 // The hue of HSV, 0..1 from red to red, and its saturation. Both stay the same if the color is scaled.
 vec2 hue_curves_place(vec3 rgb) {
@@ -19,7 +20,7 @@ vec4 hue_curves(
     vec4 c = finite(image);
     vec2 place = hue_curves_place(c.rgb);
     float hue = place.x, saturation = place.y;
-    float turn = 6.283185307179586 * saturation * curve_at(hue_by_hue, hue, false);
+    float turn = 2.0 * PI * saturation * curve_at(hue_by_hue, hue, false);
     float factor = mix(1.0, curve_at(saturation_by_hue, hue, false), saturation);
     factor *= curve_at(saturation_by_saturation, saturation, false);
     float light = mix(1.0, curve_at(light_by_hue, hue, false), saturation);

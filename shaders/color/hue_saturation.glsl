@@ -1,6 +1,7 @@
 #include "lib/color.glsl"
 #include "lib/finite.glsl"
 #include "lib/oklab.glsl"
+#include "lib/pi.glsl"
 
 vec3 hue_saturation_perceptual(vec3 rgb, float turn, float saturation) {
     vec3 lab = to_oklab(rgb);
@@ -18,10 +19,9 @@ vec3 hue_saturation_luminance(vec3 rgb, float turn, float saturation) {
 
 // Saturation is limited to the value at which the smallest channel becomes 0.
 vec3 hue_saturation_hsv(vec3 rgb, float turn, float saturation) {
-    const float circle = 6.28318531;
     float high = largest(rgb), spread = high - smallest(rgb);
     float strongest = spread > 0.0 ? max(high / spread, 1.0) : 1.0;
-    return mix(vec3(high), with_hue(rgb, hue(rgb) + turn / circle), min(saturation, strongest));
+    return mix(vec3(high), with_hue(rgb, hue(rgb) + turn / (2.0 * PI)), min(saturation, strongest));
 }
 
 vec4 hue_saturation(vec4 image, int mode, float hue, float saturation, float value) {

@@ -1,15 +1,14 @@
 #include "lib/color.glsl"
 #include "lib/finite.glsl"
 #include "lib/hash.glsl"
-
-const float crt_circle = 6.28318531;
+#include "lib/pi.glsl"
 
 // The mean of a cosine over `width` turns around a phase, both in turns. Periods shorter than two pixels would cause
 // moire, so they fade out before: the fade starts at 0.45 turns for a pixel.
 float crt_cosine(float phase, float width) {
     if (width >= 0.5) return 0.0;
-    float half_turn = 0.5 * crt_circle * width, fade = min(10.0 - 20.0 * width, 1.0);
-    return fade * cos(crt_circle * phase) * (half_turn > 1e-4 ? sin(half_turn) / half_turn : 1.0);
+    float half_turn = PI * width, fade = min(10.0 - 20.0 * width, 1.0);
+    return fade * cos(2.0 * PI * phase) * (half_turn > 1e-4 ? sin(half_turn) / half_turn : 1.0);
 }
 
 vec4 crt(

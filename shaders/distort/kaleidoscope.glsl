@@ -1,11 +1,11 @@
 #include "lib/finite.glsl"
 #include "lib/footprint.glsl"
+#include "lib/pi.glsl"
 
 // Where a pixel reads. `tube` holds the rotation, the angle of the slice that is repeated, and the zoom.
 vec2 kaleidoscope_source(vec2 at, int segments, vec2 center, vec3 tube) {
-    const float circle = 6.28318531;
     vec2 away = at - center;
-    float far = length(away), wedge = circle / float(segments);
+    float far = length(away), wedge = 2.0 * PI / float(segments);
     float angle = far > 0.0 ? atan(away.y, away.x) - tube.x : 0.0;
     angle -= wedge * floor(angle / wedge);
     angle = min(angle, wedge - angle) + tube.y;  // every second wedge is mirrored

@@ -1,6 +1,7 @@
 #include "lib/environment.glsl"
 #include "lib/finite.glsl"
 #include "lib/footprint.glsl"
+#include "lib/pi.glsl"
 
 // Directions have x to the front, y to the left and z up. Projections are numbered as the options of `source` and
 // `target` are, which are the same.
@@ -102,7 +103,7 @@ vec2 panorama_place(vec3 way, vec2 size, int projection, float angle) {
 
 // Pixels to a radian, around a direction of a picture.
 float panorama_density(vec3 way, vec2 size, int projection, float angle) {
-    if (projection == SOURCE_LAT_LONG) return size.y / ENVIRONMENT_PI;
+    if (projection == SOURCE_LAT_LONG) return size.y / PI;
     vec3 part = abs(way);
     float near = max(max(part.x, part.y), part.z);
     if (panorama_is_cube(projection)) return 0.5 * panorama_side(projection, size).y / (near * near);

@@ -1,13 +1,12 @@
 #include "lib/finite.glsl"
 #include "lib/footprint.glsl"
-
-const float polar_circle = 6.28318531;
+#include "lib/pi.glsl"
 
 // Angle as a part of a turn, and distance as a part of the radius.
 vec2 polar_of(vec2 at, float radius, float rotation, vec2 center) {
     vec2 away = at - center;
     float far = length(away), angle = far > 0.0 ? atan(away.y, away.x) - rotation : 0.0;
-    return vec2(fract(angle / polar_circle), far / radius);
+    return vec2(fract(angle / (2.0 * PI)), far / radius);
 }
 
 // Wraps the picture around the center: its left and right sides join, its bottom is the rim.
@@ -15,7 +14,7 @@ vec4 polar_wrap(float radius, float rotation, vec2 center, bool empty) {
     vec2 at = vec2(pixel) + 0.5, size = vec2(image_size);
     float far = max(distance(at, center), 0.5);
     // The part of the circle and of the radius that a pixel spans. Differences would be wrong at the seam.
-    int n = footprint_samples(vec2(size.x / (polar_circle * far), 0.0), vec2(0.0, size.y / radius));
+    int n = footprint_samples(vec2(size.x / (2.0 * PI * far), 0.0), vec2(0.0, size.y / radius));
     vec4 sum = vec4(0.0);
     for (int i = 0; i < n * n; ++i) {
         vec2 place = polar_of(at + footprint_at(i, n), radius, rotation, center);
@@ -28,7 +27,7 @@ vec4 polar_wrap(float radius, float rotation, vec2 center, bool empty) {
 
 vec4 polar_unwrap(float radius, float rotation, vec2 center) {
     vec2 at = vec2(pixel) + 0.5, size = vec2(extent);
-    float turn = polar_circle / size.x, ring = radius / size.y;
+    float turn = 2.0 * PI / size.x, ring = radius / size.y;
     int n = footprint_samples(vec2(turn * at.y * ring, 0.0), vec2(0.0, ring));
     vec4 sum = vec4(0.0);
     for (int i = 0; i < n * n; ++i) {

@@ -1,17 +1,17 @@
 #include "lib/finite.glsl"
 #include "lib/footprint.glsl"
+#include "lib/pi.glsl"
 
 // Where a pixel reads. `wave` holds the amplitude, the wavelength, the phase, and the distance at which the wave fades
 // to 1 / e.
 vec2 ripple_source(vec2 at, int shape, int motion, float angle, vec2 center, vec4 wave) {
-    const float circle = 6.28318531;
     vec2 away = at - center, along = vec2(cos(angle), sin(angle));
     float run = dot(away, along);
     if (shape == SHAPE_CIRCULAR) {
         run = length(away);
         along = run > 0.0 ? away / run : vec2(0.0);
     }
-    float height = wave.x * sin(circle * (run / wave.y - wave.z)) * exp(-abs(run) / wave.w);
+    float height = wave.x * sin(2.0 * PI * (run / wave.y - wave.z)) * exp(-abs(run) / wave.w);
     return at + height * (motion == MOTION_ALONG ? along : vec2(-along.y, along.x));
 }
 

@@ -1,5 +1,6 @@
 #include "lib/glare.glsl"
 #include "lib/noise.glsl"
+#include "lib/pi.glsl"
 #include "lib/spectrum.glsl"
 
 const float eye_glare_halo_end = 6.0;  // degrees that the table spans: the halo is dark beyond
@@ -40,8 +41,8 @@ float eye_glare_rays(vec2 way, float pixels, float rays) {
     float sum = 0.0, away = length(way);
     vec2 toward = way / away;
     for (float count = 30.0; count < 200.0; count *= 2.5) {
-        float width = 6.2831853 * away / (pixels * count);
-        vec3 place = vec3(toward * count / 6.2831853, 0.6 * log(away) + count);
+        float width = 2.0 * PI * away / (pixels * count);
+        vec3 place = vec3(toward * count / (2.0 * PI), 0.6 * log(away) + count);
         sum += smoothstep(2.0, 5.0, width) * gradient_noise(place, uvec3(0u)).x;
     }
     return 1.0 + rays * clamp(2.0 * sum, -1.0, 1.0);

@@ -1,9 +1,9 @@
 #include "lib/bright.glsl"
 #include "lib/color.glsl"
 #include "lib/glare.glsl"
+#include "lib/pi.glsl"
 #include "lib/spectrum.glsl"
 
-const float kernel_glare_turn = 6.283185307179586;
 const float kernel_glare_nm = 550.0;  // nm: the wavelength for which the pattern of an iris is computed
 
 vec4 kernel_glare_light(vec4 image, float threshold, float knee, float limit) {
@@ -31,7 +31,7 @@ vec4 kernel_glare_fit() {
 // The diffraction pattern of a regular polygon of radius 1 for one wavelength: the square of its Fourier transform,
 // computed by the divergence theorem as a sum over the edges. It is 1 in the center.
 float kernel_glare_diffracted(vec2 k, int blades, float angle) {
-    float part = kernel_glare_turn / float(blades), square = dot(k, k);
+    float part = 2.0 * PI / float(blades), square = dot(k, k);
     float side = 2.0 * sin(0.5 * part), inner = cos(0.5 * part), area = 0.5 * float(blades) * sin(part);
     if (square < 1e-3) return 1.0;
     vec2 sum = vec2(0.0);

@@ -1,5 +1,6 @@
 #include "lib/finite.glsl"
 #include "lib/noise.glsl"
+#include "lib/pi.glsl"
 
 const float GABOR_NOISE_END = 0.04321392;  // exp(-pi): the Gaussian at its radius, which is taken away
 const float GABOR_NOISE_ENERGY = 0.461243;  // the integral of the squared window over a disc of radius 1
@@ -17,8 +18,8 @@ float gabor_noise_cell(
         if (square >= 1.0) continue;
         vec3 other = hash3(cell + ivec3(0, 0, 1), stream);
         float way = angle + spread * (2.0 * other.x - 1.0), phase = dice.z + (other.y < 0.5 ? moment : -moment);
-        float wave = cos(6.283185307179586 * (turns * dot(p, vec2(cos(way), sin(way))) + phase));
-        sum += (exp(-3.141592653589793 * square) - GABOR_NOISE_END) / (1.0 - GABOR_NOISE_END) * wave;
+        float wave = cos(2.0 * PI * (turns * dot(p, vec2(cos(way), sin(way))) + phase));
+        sum += (exp(-PI * square) - GABOR_NOISE_END) / (1.0 - GABOR_NOISE_END) * wave;
     }
     return sum;
 }

@@ -1,7 +1,8 @@
 #include "lib/finite.glsl"
+#include "lib/pi.glsl"
 
 // The angle of v as a fraction of a turn, clockwise on the screen.
-float ramp_turn(vec2 v) { return v == vec2(0.0) ? 0.0 : atan(v.y, v.x) / 6.2831853; }
+float ramp_turn(vec2 v) { return v == vec2(0.0) ? 0.0 : atan(v.y, v.x) / (2.0 * PI); }
 
 void ramp(
     int shape, vec2 start, vec2 end, vec4 first, vec4 second, float smoothness, out vec4 result, out float value

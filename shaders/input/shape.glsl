@@ -2,6 +2,7 @@
 // "2D distance functions". Coverage is the mean over a grid inside of each pixel that an edge crosses.
 
 #include "lib/finite.glsl"
+#include "lib/pi.glsl"
 
 const int SHAPE_GRID = 24;  // samples across a pixel: coverage is within 2e-3 of clipped polygons; 16 gave 3e-3
 
@@ -19,7 +20,7 @@ float shape_ellipse(vec2 p, vec2 half_size) {
 
 // Corner `number` of a polygon, or of a star, whose odd corners lie further in; the first is at the top.
 vec2 shape_corner(int number, int count, bool is_star, float inner, vec2 half_size) {
-    float turn = 6.283185307179586 * float(number) / float(count);
+    float turn = 2.0 * PI * float(number) / float(count);
     float radius = is_star && (number & 1) == 1 ? inner : 1.0;
     return radius * half_size * vec2(sin(turn), -cos(turn));
 }

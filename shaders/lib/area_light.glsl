@@ -6,13 +6,12 @@
 // and equally bright everywhere, so nothing but its outline counts.
 
 #include "lib/brdf.glsl"
+#include "lib/pi.glsl"
 
 const int AREA_RECTANGLE = 0, AREA_DISC = 1;  // a tube is neither
 const int AREA_CELLS = 64;                    // roughnesses, and angles of the eye, in the table of matrices
 const int AREA_RIM = 16;                      // corners of a disc: with its area, within 1e-3 of the integral
 const int AREA_ARC = 9;                       // corners at each end of a tube
-const float AREA_PI = 3.14159265;
-
 // From the world to the axes of a surface, on from there into a cosine, and back to the world; and the part of white
 // light that GGX reflects with a Fresnel reflectance of 1.
 struct AreaSurface { vec3 view; mat3 frame, lobe, back; float share; };
@@ -115,11 +114,11 @@ vec3 area_corner(AreaLight lamp, int corner) {
         return lamp.middle - side.x * lamp.along - side.y * lamp.across;
     }
     if (lamp.kind == AREA_DISC) {
-        float step = 2.0 * AREA_PI / float(AREA_RIM), turn = float(corner) * step;
+        float step = 2.0 * PI / float(AREA_RIM), turn = float(corner) * step;
         return lamp.middle + sqrt(step / sin(step)) * (cos(turn) * lamp.along + sin(turn) * lamp.across);
     }
     int end = corner / AREA_ARC, number = corner - end * AREA_ARC;
-    float side = end == 0 ? 1.0 : -1.0, whole = lamp.far[end] != 0 ? 2.0 * (lamp.arc - AREA_PI) : 2.0 * lamp.arc;
+    float side = end == 0 ? 1.0 : -1.0, whole = lamp.far[end] != 0 ? 2.0 * (lamp.arc - PI) : 2.0 * lamp.arc;
     float edges = float(AREA_ARC - 1), step = whole / edges, turn = side * (float(number) * step - lamp.arc);
     bool between = number > 0 && number < AREA_ARC - 1;
     float wide = between ? 1.0 + step * step / 12.0 * edges / (edges - 1.0) : 1.0;

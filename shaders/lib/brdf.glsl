@@ -1,7 +1,6 @@
 // Reflection of light at surfaces. Vectors have length 1: n is the normal, h is halfway between the directions to the
 // eye and to the light. nv, nl and vh are cosines between them; alpha is the square of the roughness.
-
-const float BRDF_PI = 3.14159265;
+#include "lib/pi.glsl"
 
 // Fresnel reflectance (Schlick 1994).
 vec3 fresnel(vec3 f0, float vh) {
@@ -14,7 +13,7 @@ vec3 fresnel(vec3 f0, float vh) {
 float ggx_facets(vec3 n, vec3 h, float alpha) {
     vec3 off = cross(n, h);
     float along = alpha * dot(n, h), size = along * along + dot(off, off);
-    return alpha * alpha / (BRDF_PI * size * size);
+    return alpha * alpha / (PI * size * size);
 }
 
 // The share of visible and lit microfacets, divided by 4 nv nl: Smith's height-correlated term (Heitz 2014).
@@ -41,7 +40,7 @@ vec3 ggx_sky(vec3 f0, float nv, float alpha) {
 // alpha it is as wide as the GGX lobe; at alpha 1 its exponent is 1.
 float phong_lobe(float rl, float alpha) {
     float power = 0.5 / (alpha * alpha) + 0.5;
-    return (power + 2.0) / (2.0 * BRDF_PI) * pow(max(rl, 1e-9), power);
+    return (power + 2.0) / (2.0 * PI) * pow(max(rl, 1e-9), power);
 }
 
 // The light that a spherical lamp throws on a surface, relative to a point lamp straight above: the cosine, except
@@ -53,5 +52,5 @@ float ball_cosine(float cosine, float square) {
     float t = sine * sqrt(1.0 - y * y) / x, t2 = t * t;
     // t - atan(t), as a series where the difference would lose digits.
     float rest = t < 0.25 ? t * t2 * (1.0 / 3.0 - t2 * (0.2 - t2 * (1.0 / 7.0 - t2 * (1.0 / 9.0 - t2 / 11.0)))) : t - atan(t);
-    return max((cosine * acos(y) + t - rest / square) / BRDF_PI, 0.0);
+    return max((cosine * acos(y) + t - rest / square) / PI, 0.0);
 }

@@ -1,7 +1,6 @@
 // Environment pictures by longitude and latitude, up at the top. With z up, x is in the middle and y a quarter to the
 // left, as in Blender; with y up, z is in the middle and x a quarter to the left, as in OpenEXR.
-
-const float ENVIRONMENT_PI = 3.14159265;
+#include "lib/pi.glsl"
 
 // The place of a direction in the picture, as fractions of it. `turn` rotates the surroundings counterclockwise, seen
 // from above.
@@ -9,21 +8,21 @@ vec2 environment_uv(vec3 way, bool y_up, float turn) {
     if (y_up) way = way.zxy;
     float longitude = way.xy == vec2(0.0) ? 0.0 : atan(way.y, way.x);
     float below = acos(clamp(way.z, -1.0, 1.0));
-    return vec2(fract(0.5 - (longitude - turn) / (2.0 * ENVIRONMENT_PI)), below / ENVIRONMENT_PI);
+    return vec2(fract(0.5 - (longitude - turn) / (2.0 * PI)), below / PI);
 }
 
 // The direction of a place in the picture.
 vec3 environment_way(vec2 uv, bool y_up, float turn) {
-    float longitude = (0.5 - uv.x) * 2.0 * ENVIRONMENT_PI + turn, below = uv.y * ENVIRONMENT_PI;
+    float longitude = (0.5 - uv.x) * 2.0 * PI + turn, below = uv.y * PI;
     vec3 way = vec3(sin(below) * vec2(cos(longitude), sin(longitude)), cos(below));
     return y_up ? way.yzx : way;
 }
 
 // The solid angle of a pixel in a row.
 float environment_angle(int row, ivec2 size) {
-    float height = ENVIRONMENT_PI / float(size.y);
+    float height = PI / float(size.y);
     float below = float(row) * height;
-    return (cos(below) - cos(below + height)) * 2.0 * ENVIRONMENT_PI / float(size.x);
+    return (cos(below) - cos(below + height)) * 2.0 * PI / float(size.x);
 }
 
 // The four pixels around a direction, with their weights.

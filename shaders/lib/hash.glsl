@@ -1,4 +1,5 @@
 // Integer hashes: the same bits with every driver.
+#include "lib/pi.glsl"
 
 // The hash pcg3d (Jarzynski and Olano 2020, "Hash Functions for GPU Rendering").
 uvec3 pcg3d(uvec3 v) {
@@ -22,5 +23,5 @@ vec3 hash3(ivec3 cell, uvec3 seed) { return unit_float(pcg3d(uvec3(cell) + seed)
 // Three independent normally distributed numbers for a lattice cell, mean 0 and variance 1 (Box and Muller 1958).
 vec3 normal3(ivec3 cell, uvec3 seed) {
     uvec3 bits = pcg3d(uvec3(cell) + seed);
-    return sqrt(-2.0 * log(1.0 - unit_float(bits))) * cos(6.28318531 * unit_float(pcg3d(bits)));
+    return sqrt(-2.0 * log(1.0 - unit_float(bits))) * cos(2.0 * PI * unit_float(pcg3d(bits)));
 }

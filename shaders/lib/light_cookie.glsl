@@ -3,6 +3,7 @@
 #include "lib/environment.glsl"
 #include "lib/footprint.glsl"
 #include "lib/geometry.glsl"
+#include "lib/pi.glsl"
 
 const int COOKIE_CONE = 1, COOKIE_BEAM = 2, COOKIE_ROUND = 3;  // by a spot, by a sun, in all directions; 0 is none
 
@@ -32,7 +33,7 @@ CookiePlace cookie_place(int light, int kind, vec2 size, vec3 place, float pitch
     vec2 at = vec2(dot(way, along.xyz), dot(way, across.xyz)), sides = vec2(1.0);
     if (kind == COOKIE_ROUND) {
         float reach = max(length(way), 1e-9);
-        vec2 angles = pitch / reach * vec2(0.5, 1.0) / ENVIRONMENT_PI;
+        vec2 angles = pitch / reach * vec2(0.5, 1.0) / PI;
         return CookiePlace(environment_uv(way / reach, false, 0.0), angles);
     }
     float apart = 1.0, aspect = size.x / size.y;

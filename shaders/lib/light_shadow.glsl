@@ -1,4 +1,5 @@
 // How much of each of four lights a pixel sees, in passes that read `lamps`, a table of lights, `surfaces` and `normal`.
+#include "lib/pi.glsl"
 #include "lib/shadow.glsl"
 
 const int LAMP_SUN = 0, LAMP_BALL = 1, LAMP_DISC = 2;  // others are rectangles, from the middle along two half axes
@@ -9,7 +10,7 @@ vec4 lamp_way(int row, vec3 place, vec2 random) {
     vec4 origin = lamps_at(ivec2(0, row)), along = lamps_at(ivec2(1, row)), across = lamps_at(ivec2(2, row));
     int kind = int(origin.w);
     vec3 to = kind == LAMP_SUN ? origin.xyz : origin.xyz - place;
-    float turn = 2.0 * OCCLUSION_PI * random.x;
+    float turn = 2.0 * PI * random.x;
     vec2 part = sqrt(random.y) * vec2(cos(turn), sin(turn));
     if (kind <= LAMP_BALL) {
         vec3 side = normalize(cross(to, abs(to.z) < 0.7 * length(to) ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0)));

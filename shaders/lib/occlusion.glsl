@@ -3,8 +3,8 @@
 #include "lib/blue_noise.glsl"
 #include "lib/camera.glsl"
 #include "lib/geometry.glsl"
+#include "lib/pi.glsl"
 
-const float OCCLUSION_PI = 3.14159265;
 const float OCCLUSION_GOLDEN = 0.61803399;
 const float OCCLUSION_NEXT = 1.3;  // pixels: nearer samples would be the pixel itself (XeGTAO)
 
@@ -65,7 +65,7 @@ float slice_whole(float tilt) { return cos(tilt) + tilt * sin(tilt); }
 // The angle up to which `part` of the light between the view and `to` passes: an approximation by sin^2, then one step
 // of Newton's method. The mean error is 0.002 of the light.
 float slice_reach(float tilt, float to, float part) {
-    float end = abs(to), lean = to < 0.0 ? -tilt : tilt, stretch = 1.0 + lean / (0.5 * OCCLUSION_PI);
+    float end = abs(to), lean = to < 0.0 ? -tilt : tilt, stretch = 1.0 + lean / (0.5 * PI);
     if (end < 1e-4) return 0.0;
     float angle = asin(clamp(sqrt(part) * sin(end / stretch), 0.0, 1.0)) * stretch;
     float lacking = part * slice_light(lean, end) - slice_light(lean, angle);

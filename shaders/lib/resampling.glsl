@@ -1,4 +1,5 @@
 // Filters for resampling, by distance in pixels. They are not normalized: divide by the sum of the weights.
+#include "lib/pi.glsl"
 
 // The triangle filter: linear interpolation.
 float triangle_weight(float x) { return max(1.0 - abs(x), 0.0); }
@@ -15,8 +16,7 @@ float cubic_weight(float x, float b, float c) {
 
 // A sinc windowed by the main lobe of a wider sinc (Lanczos; Duchon 1979).
 float lanczos_weight(float x, float lobes) {
-    const float pi = 3.14159265;
     if (abs(x) >= lobes) return 0.0;
     if (abs(x) < 1e-4) return 1.0;
-    return lobes * sin(pi * x) * sin(pi * x / lobes) / (pi * pi * x * x);
+    return lobes * sin(PI * x) * sin(PI * x / lobes) / (PI * PI * x * x);
 }

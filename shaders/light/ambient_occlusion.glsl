@@ -2,6 +2,7 @@
 #include "lib/alpha.glsl"
 #include "lib/finite.glsl"
 #include "lib/occlusion.glsl"
+#include "lib/pi.glsl"
 
 // Smaller pictures hold every `factor`-th pixel: their pixel p is pixel p * factor of depth. Their xyz is the mean
 // direction of open sky, which is shorter the wider the sky is spread; w is the open part.
@@ -37,12 +38,12 @@ vec4 ambient_occlusion_horizons(
     float fade = 1.0 / max(falloff * radius, 1e-6 * radius), open = 0.0, whole = 0.0;
     vec3 bent = vec3(0.0);
     for (int s = 0; s < slices; ++s) {
-        Slice slice = slice_at(rows, rays, here, vec2(depth_size), OCCLUSION_PI * (float(s) + noise.x) / float(slices));
+        Slice slice = slice_at(rows, rays, here, vec2(depth_size), PI * (float(s) + noise.x) / float(slices));
         vec2 next = OCCLUSION_NEXT * normalize(slice.pace);
         float tilt = slice.tilt, all = slice.share * slice_whole(tilt);
         // Horizons are cosines to the view, ahead along the slice and behind. They start at the surface itself.
-        vec2 surface = cos(tilt + vec2(0.5, -0.5) * OCCLUSION_PI), horizon = surface, lost = vec2(0.0);
-        float first = -slice_light(tilt, tilt - 0.5 * OCCLUSION_PI);
+        vec2 surface = cos(tilt + vec2(0.5, -0.5) * PI), horizon = surface, lost = vec2(0.0);
+        float first = -slice_light(tilt, tilt - 0.5 * PI);
         uint sectors = 0u;
         for (int k = 0; k < steps; ++k) {
             float part = (float(k) + fract(noise.y + float(s + k * steps) * OCCLUSION_GOLDEN)) / float(steps);
@@ -66,7 +67,7 @@ vec4 ambient_occlusion_horizons(
                     vec3 back = way - thickness * here.view;
                     vec2 ends = acos(clamp(vec2(rise, dot(back, here.view) / length(back)), -1.0, 1.0));
                     ends = side == 0 ? ends : -ends.yx;
-                    ends = clamp(ends, tilt - 0.5 * OCCLUSION_PI, tilt + 0.5 * OCCLUSION_PI);
+                    ends = clamp(ends, tilt - 0.5 * PI, tilt + 0.5 * PI);
                     vec2 light = vec2(slice_light(tilt, ends.x), slice_light(tilt, ends.y)) * sign(ends);
                     uvec2 bounds = uvec2(clamp(32.0 * (light - first) / slice_whole(tilt), 0.0, 32.0) + 0.5);
                     uint taken = bounds.y - bounds.x;
@@ -87,7 +88,7 @@ vec4 ambient_occlusion_horizons(
         }
         vec2 angle = vec2(1.0, -1.0) * acos(clamp(horizon, -1.0, 1.0));
         if (mode == MODE_GTAO) {
-            angle = clamp(angle, tilt - 0.5 * OCCLUSION_PI, tilt + 0.5 * OCCLUSION_PI);
+            angle = clamp(angle, tilt - 0.5 * PI, tilt + 0.5 * PI);
             whole += all;
             open += slice.share * (slice_light(tilt, angle.x) + slice_light(tilt, angle.y));
             vec2 toward = slice.share * (slice_direction(tilt, angle.x) + slice_direction(tilt, angle.y));
@@ -118,7 +119,7 @@ vec4 ambient_occlusion_points(
     vec3 across = normalize(cross(pole, abs(pole.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0)));
     float open = 0.0, whole = 0.0;
     for (int i = 0; i < points; ++i) {
-        float turn = 2.0 * OCCLUSION_PI * fract(float(i) * OCCLUSION_GOLDEN + noise.y);
+        float turn = 2.0 * PI * fract(float(i) * OCCLUSION_GOLDEN + noise.y);
         float part = (float(i) + noise.x) / float(points);
         float away = fract(float(i) * second + noise.x + 5.0 * noise.y), lift = part;
         if (mode == MODE_CRYTEK) lift = 2.0 * part - 1.0, away = pow(away, 1.0 / 3.0);

@@ -1,3 +1,4 @@
+#include "lib/pi.glsl"
 #include "lib/shadow.glsl"
 #include "lib/solid.glsl"
 
@@ -28,7 +29,7 @@ float contact_shadows_open(
     vec2 noise = occlusion_noise(pixel, true);
     for (int i = 0; i < count; ++i) {
         vec2 random = fract(noise + float(i) * lattice);
-        float turn = 2.0 * OCCLUSION_PI * random.x, away = spread * sqrt(random.y);
+        float turn = 2.0 * PI * random.x, away = spread * sqrt(random.y);
         vec3 way = normalize(to + away * (cos(turn) * across + sin(turn) * cross(to, across)));
         open += shadow_open(rows, uv, 1.0 / near, way, plane, reach, thickness, size);
     }

@@ -8,6 +8,7 @@
 #include "lib/geometry.glsl"
 #include "lib/light_cookie.glsl"
 #include "lib/light_shadow.glsl"
+#include "lib/pi.glsl"
 #include "lib/solid.glsl"
 #include "lib/working.glsl"
 
@@ -194,10 +195,10 @@ vec4 deferred_lighting_lit(
         LitMaterial material = deferred_lighting_material(part, mapped, metal, roughness, specular, seen, eye);
         LitSurface surface = material.surface;
         vec3 sky = ambient * clamp(finite(occlusion_at(part.at)), 0.0, 1.0);
-        vec3 fallen = BRDF_PI * sky, mirrored = sky * ggx_sky(surface.f0, surface.nv, surface.alpha);
+        vec3 fallen = PI * sky, mirrored = sky * ggx_sky(surface.f0, surface.nv, surface.alpha);
         ivec2 tile = tiled ? part.at / DEFERRED_LIGHTING_TILE : ivec2(0);
         deferred_lighting_sum(model, texels, tile, surface, fallen, mirrored);
-        vec3 lit = share.x * material.scatter * fallen / BRDF_PI + share.y * mirrored;
+        vec3 lit = share.x * material.scatter * fallen / PI + share.y * mirrored;
         sum += premultiplied(vec4(lit, material.color.a));
     }
     return finite(vec4(sum.rgb, color.a));
@@ -246,7 +247,7 @@ vec4 deferred_lighting_limited(
             vec3 matte = vec3(0.0), shiny = vec3(0.0);
             deferred_lighting_add(model, light, surface, matte, shiny);
             vec3 through = mask[light] * cookie_color(light, surface.place, pitch);
-            fallen += through * matte / BRDF_PI, mirrored += through * shiny;
+            fallen += through * matte / PI, mirrored += through * shiny;
         }
         AreaSurface lobes = area_surface(surface.normal, surface.view, surface.nv, sqrt(surface.alpha));
         for (int light = 0; light < count; ++light) {

@@ -1,12 +1,13 @@
-#include "light/ambient_occlusion.glsl"
-#include "light/image_based_light.glsl"
 #include "lib/alpha.glsl"
 #include "lib/coverage.glsl"
 #include "lib/denoise.glsl"
 #include "lib/environment.glsl"
 #include "lib/finite.glsl"
 #include "lib/occlusion.glsl"
+#include "lib/pi.glsl"
 #include "lib/prefiltered_near.glsl"
+#include "light/ambient_occlusion.glsl"
+#include "light/image_based_light.glsl"
 
 // Parts of the hidden light on each side of a slice. With 8, 1 % of the pixels of the preset sky_bounce change by more
 // than 1 / 255; with 2, 4 %.
@@ -48,7 +49,7 @@ vec3 directional_occlusion_hidden(
 
 // How many pixels wide a part of a slice is: its step along, and its share of the circle across.
 float directional_occlusion_width(vec2 away, int slices, vec2 pace) {
-    return DIRECTIONAL_OCCLUSION_FOOTPRINT * sqrt(length(pace) * length(away) * OCCLUSION_PI / float(slices));
+    return DIRECTIONAL_OCCLUSION_FOOTPRINT * sqrt(length(pace) * length(away) * PI / float(slices));
 }
 
 // The luminance above which a pixel counts as a lamp.
@@ -84,10 +85,10 @@ void directional_occlusion_seen(
     float limit = directional_occlusion_limit(at);
     vec3 light = vec3(0.0), sum = vec3(0.0);
     for (int s = 0; s < slices; ++s) {
-        Slice slice = slice_at(rows, rays, here, vec2(depth_size), OCCLUSION_PI * (float(s) + noise.x) / float(slices));
+        Slice slice = slice_at(rows, rays, here, vec2(depth_size), PI * (float(s) + noise.x) / float(slices));
         vec2 next = OCCLUSION_NEXT * normalize(slice.pace);
         // Horizons ahead along the slice and behind: cosines to the view, and the light that passes up to them.
-        vec2 ends = slice.tilt + vec2(0.5, -0.5) * OCCLUSION_PI, surface = cos(ends), horizon = surface;
+        vec2 ends = slice.tilt + vec2(0.5, -0.5) * PI, surface = cos(ends), horizon = surface;
         vec2 passes = vec2(slice_light(slice.tilt, ends.x), slice_light(slice.tilt, ends.y));
         vec3 bounced = vec3(0.0), caught = vec3(0.0);
         for (int k = 0; k < steps; ++k) {

@@ -5,6 +5,7 @@
 #include "lib/environment.glsl"
 #include "lib/finite.glsl"
 #include "lib/geometry.glsl"
+#include "lib/pi.glsl"
 
 const float IMAGE_BASED_LIGHT_BRIGHTEST = 65504.0;  // the largest half float: more could overflow in sums
 // Samples of a reflection lobe: a choice between time and error. The preset studio_light differs from the one with 256
@@ -28,11 +29,11 @@ vec4 image_based_light_sky() {
 // The cosine-weighted mean of the sky around the direction of this pixel.
 vec4 image_based_light_irradiance() {
     vec3 normal = environment_way((vec2(pixel) + 0.5) / vec2(extent), false, 0.0);
-    float turn = 2.0 * ENVIRONMENT_PI / float(sky_size.x);
+    float turn = 2.0 * PI / float(sky_size.x);
     mat2 turned = mat2(cos(turn), -sin(turn), sin(turn), cos(turn));
     vec4 sum = vec4(0.0);
     for (int y = 0; y < sky_size.y; ++y) {
-        float below = ENVIRONMENT_PI * (float(y) + 0.5) / float(sky_size.y), angle = environment_angle(y, sky_size);
+        float below = PI * (float(y) + 0.5) / float(sky_size.y), angle = environment_angle(y, sky_size);
         vec2 around = -vec2(cos(0.5 * turn), -sin(0.5 * turn));
         for (int x = 0; x < sky_size.x; ++x, around = turned * around) {
             float facing = sin(below) * dot(around, normal.xy) + cos(below) * normal.z;
@@ -81,7 +82,7 @@ vec3 image_based_light_level(vec2 uv, float level) {
 // The i-th microfacet around z, distributed by GGX (Walter et al. 2007).
 vec3 image_based_light_facet(int i, int count, float alpha) {
     float part = (float(i) + 0.5) / float(count);
-    float turn = 2.0 * ENVIRONMENT_PI * fract(float(i) * 0.61803399);
+    float turn = 2.0 * PI * fract(float(i) * 0.61803399);
     float lift = sqrt((1.0 - part) / (1.0 + (alpha * alpha - 1.0) * part));
     return vec3(sqrt(1.0 - lift * lift) * vec2(cos(turn), sin(turn)), lift);
 }
@@ -92,7 +93,7 @@ vec4 image_based_light_lobe(float roughness) {
     vec3 normal = environment_way((vec2(pixel) + 0.5) / vec2(extent), false, 0.0);
     vec3 across = normalize(cross(normal, abs(normal.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0)));
     vec3 beside = cross(normal, across), sum = vec3(0.0);
-    float total = 0.0, alpha = roughness * roughness, finest = 2.0 * ENVIRONMENT_PI / float(level0_size.x);
+    float total = 0.0, alpha = roughness * roughness, finest = 2.0 * PI / float(level0_size.x);
     for (int i = 0; i < IMAGE_BASED_LIGHT_SAMPLES; ++i) {
         vec3 facet = image_based_light_facet(i, IMAGE_BASED_LIGHT_SAMPLES, alpha);
         vec3 way = 2.0 * facet.z * (facet.x * across + facet.y * beside + facet.z * normal) - normal;
@@ -147,7 +148,7 @@ vec4 image_based_light_diffuse(float intensity, float rotation, int up) {
 
 // The i-th visible microfacet for a `view` in the xz plane (Heitz 2018).
 vec3 image_based_light_seen(int i, int count, vec3 view, float alpha) {
-    float part = (float(i) + 0.5) / float(count), turn = 2.0 * ENVIRONMENT_PI * fract(float(i) * 0.61803399);
+    float part = (float(i) + 0.5) / float(count), turn = 2.0 * PI * fract(float(i) * 0.61803399);
     vec3 stretched = normalize(vec3(alpha * view.x, 0.0, view.z)), across = vec3(0.0, 1.0, 0.0);
     vec2 at = sqrt(part) * vec2(cos(turn), sin(turn));
     at.y = mix(sqrt(1.0 - at.x * at.x), at.y, 0.5 * (1.0 + stretched.z));

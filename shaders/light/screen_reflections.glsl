@@ -4,6 +4,7 @@
 #include "lib/denoise.glsl"
 #include "lib/march.glsl"
 #include "lib/occlusion.glsl"
+#include "lib/pi.glsl"
 #include "lib/prefiltered_near.glsl"
 
 const float SCREEN_REFLECTIONS_SHARP = 1e-3;  // with a smaller alpha, GGX counts as a mirror
@@ -89,7 +90,7 @@ float screen_reflections_open(float cosine, float alpha) {
 // by a visible microfacet with its probability (Heitz 2018, in the form of Dupuy and Benyoub 2023).
 vec4 screen_reflections_way(vec3 view, float alpha, vec2 random, int count) {
     vec3 stretched = normalize(vec3(alpha * view.xy, view.z));
-    float turn = 2.0 * OCCLUSION_PI * random.x, z = 1.0 - random.y * (1.0 + stretched.z);
+    float turn = 2.0 * PI * random.x, z = 1.0 - random.y * (1.0 + stretched.z);
     float side = sqrt(clamp(1.0 - z * z, 0.0, 1.0));
     vec3 bump = vec3(side * cos(turn), side * sin(turn), z) + stretched;
     bump = normalize(vec3(alpha * bump.xy, max(bump.z, 1e-6)));

@@ -1,4 +1,5 @@
 // Fast Fourier transforms of four real pictures at once: red + i green and blue + i alpha are two complex pictures.
+#include "lib/pi.glsl"
 
 vec2 fourier_times(vec2 a, vec2 b) { return vec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x); }
 
@@ -9,7 +10,7 @@ vec4 fourier_step(vec4 sum, vec2 root, vec4 x) {
 
 vec2 fourier_root(int frequency, int points, float direction) {
     if (2 * frequency > points) frequency -= points;  // the smaller of two equal angles is more exact
-    float angle = direction * 6.283185307179586 * float(frequency) / float(points);
+    float angle = direction * 2.0 * PI * float(frequency) / float(points);
     return vec2(cos(angle), sin(angle));
 }
 

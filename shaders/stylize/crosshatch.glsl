@@ -1,13 +1,12 @@
 #include "lib/display.glsl"
-
-const float crosshatch_half_turn = 3.14159265;
+#include "lib/pi.glsl"
 
 // The direction of a layer of lines: 0, 90, 45, 135, ... degrees. Each halves the largest remaining gap (van der Corput
 // sequence).
 float crosshatch_turn(int layer) {
     float turn = 0.0, part = 0.5;
     for (int bits = layer; bits > 0; bits >>= 1, part *= 0.5) turn += part * float(bits & 1);
-    return turn * crosshatch_half_turn;
+    return turn * PI;
 }
 
 vec4 crosshatch(vec4 image, float size, float thickness, int layers, float angle, vec4 ink, vec4 paper) {

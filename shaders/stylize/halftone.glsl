@@ -1,10 +1,11 @@
 #include "lib/alpha.glsl"
 #include "lib/color.glsl"
 #include "lib/finite.glsl"
+#include "lib/pi.glsl"
 
 // The part of a unit square that a disc around its center covers.
 float halftone_disc(float radius) {
-    float square = radius * radius, disc = 3.14159265 * square;
+    float square = radius * radius, disc = PI * square;
     if (radius <= 0.5) return disc;
     return disc - 4.0 * (square * acos(0.5 / radius) - 0.5 * sqrt(square - 0.25));
 }

@@ -1,7 +1,6 @@
 #include "lib/display.glsl"
+#include "lib/pi.glsl"
 #include "lib/structure.glsl"
-
-const float kuwahara_pi = 3.14159265;
 
 vec4 kuwahara_tones(vec4 image) { return to_display(image); }
 vec4 kuwahara(vec4 tones) { return from_display(tones); }
@@ -51,7 +50,7 @@ kuwahara_Window kuwahara_window(vec3 change, int kind, float radius) {
     vec2 along = anisotropy > 0.0 ? structure_across(change).yx * vec2(-1.0, 1.0) : vec2(1.0, 0.0);
     vec2 axes = radius * vec2(1.0 + anisotropy, 1.0 / (1.0 + anisotropy));
     mat2 to_disc = mat2(along.x / axes.x, -along.y / axes.y, along.y / axes.x, along.x / axes.y);
-    const float edge_turn = 0.1875 * kuwahara_pi;
+    const float edge_turn = 0.1875 * PI;
     float zeta = 2.0 / radius, eta = (zeta + cos(edge_turn)) / (sin(edge_turn) * sin(edge_turn));
     return kuwahara_Window(to_disc, ivec2(length(axes * along), length(axes * along.yx)), zeta, eta);
 }
