@@ -9,6 +9,7 @@ from ...language.translation import translate
 from ..edits import align, arranging, elements, naming
 from ..edits.element_id import ElementId
 from ..edits.elements import Sizes
+from ..edits.pins import Pins
 from ..state.open_document import OpenDocument
 from .command import EditCommand, Edited
 
@@ -68,9 +69,11 @@ class ArrangeElements(EditCommand[None]):
     """Lay out the selection, or everything if less than two nodes are selected."""
 
     sizes: Sizes | None = None
+    pins: Pins | None = None
 
     def apply(self, document: OpenDocument) -> Edited[None]:
         graph = document.graph
         chosen = {key for key in document.selection if elements.can_be_linked(key, graph)}
-        graph = arranging.arrange(graph, chosen if len(chosen) > 1 else None, document.positions, self.sizes)
+        part = chosen if len(chosen) > 1 else None
+        graph = arranging.arrange(graph, part, document.positions, self.sizes, self.pins)
         return Edited(translate("Arrange"), None, graph)

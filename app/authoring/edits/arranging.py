@@ -2,31 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
+from itertools import count
 
 from ...graph import Graph, Port
 from .decor import find_frame_members, set_box
 from .element_id import ElementId
 from .elements import Place, Places, Sizes, can_be_linked, list_decor, list_elements, with_places
-from .layout import bounds, lay_out
-from .routes import routes
+from .lanes import choose_dots
+from .layout import bounds, lay_out_links
+from .pins import Pins, pin_height
+from .routes import tidy_routes, with_routes
 from .sizes import element_size
 
-_DOT_DROP = 12.0
-"""How far below the corners of its nodes a dot is placed, in canvas units: about where the first sockets are."""
 
-
-def arrange(graph: Graph, chosen: Collection[ElementId] | None, places: Places, sizes: Sizes | None = None) -> Graph:
+def arrange(
+    graph: Graph,
+    chosen: Collection[ElementId] | None,
+    places: Places,
+    sizes: Sizes | None = None,
+    pins: Pins | None = None,
+) -> Graph:
     """A graph where some nodes and ends, or all of them, are laid out in layers from left to right.
 
-    Their top left corner stays. Frames around only such elements go along and fit, dots are spread over their links.
+    Their top left corner stays. Frames around only such elements go along and fit. Links between them pass dots where
+    they would run through an element, and no others.
     """
     elements = [key for key in list_elements(graph) if can_be_linked(key, graph) and (chosen is None or key in chosen)]
     if not elements:
         return graph
     left, top, _, _ = bounds(graph, elements, places, sizes)
-    new_places = {key: (x + left, y + top) for key, (x, y) in lay_out(graph, elements, sizes).items()}
-    after = with_places(graph, new_places | _spread_dots(graph, {**places, **new_places}, set(elements), sizes))
+    spots, bends = lay_out_links(graph, elements, sizes, pins)
+    new_places = {key: (x + left, y + top) for key, (x, y) in spots.items()}
+    bends = {target: tuple((x + left, y + top) for x, y in points) for target, points in bends.items()}
+    after = _with_dots(with_places(graph, new_places), _route_links(graph, bends, new_places, sizes, pins))
     for frame in list_decor(graph, "frame"):
         members = [key for key in find_frame_members(graph, frame, places, sizes) if can_be_linked(key, graph)]
         if members and set(members) <= set(elements):
@@ -38,20 +47,36 @@ def arrange(graph: Graph, chosen: Collection[ElementId] | None, places: Places, 
     return after
 
 
-def _spread_dots(graph: Graph, places: Places, moved: set[ElementId], sizes: Sizes | None) -> dict[ElementId, Place]:
-    """New places for the dots of links whose both ends moved: evenly on the way."""
-    dot_places: dict[ElementId, Place] = {}
-    ends: dict[str, tuple[Port, Port]] = {str(end): (start, end) for end, start in graph.links.items()}
-    for target, dots in routes(graph).items():
-        if target not in ends:
-            continue
-        start, end = map(ElementId.of_port, ends[target])
-        if start in moved and end in moved:
-            (x, y), (width, _) = places[start], element_size(graph, start, sizes)
-            for number, dot in enumerate(dots, 1):
-                share = number / (len(dots) + 1)
-                across = (places[end][0] - x - width) * share
-                dot_places.setdefault(
-                    ElementId.of("dot", dot), (x + width + across, y + (places[end][1] - y) * share + _DOT_DROP)
-                )
-    return dot_places
+def _route_links(
+    graph: Graph, bends: Mapping[Port, tuple[Place, ...]], places: Places, sizes: Sizes | None, pins: Pins | None
+) -> dict[Port, tuple[Place, ...]]:
+    """The places of dots for each link, by target. Links of one socket share them where they can."""
+    boxes = {key: (*places[key], *element_size(graph, key, sizes)) for key in places}
+    rects = {key: (x, y, x + width, y + height) for key, (x, y, width, height) in boxes.items()}
+    used: dict[Port, set[Place]] = {}
+    dots: dict[Port, tuple[Place, ...]] = {}
+    for target, points in sorted(bends.items(), key=lambda bend: (len(bend[1]), bend[0])):
+        source = graph.links[target]
+        start, end = ElementId.of_port(source), ElementId.of_port(target)
+        begin = rects[start][2], rects[start][1] + pin_height(graph, source, True, pins)
+        finish = rects[end][0], rects[end][1] + pin_height(graph, target, False, pins)
+        obstacles = [rect for key, rect in rects.items() if key not in (start, end)]
+        shared = used.setdefault(source, set())
+        dots[target] = choose_dots(begin, finish, points, obstacles, shared)
+        shared.update(dots[target])
+    return dots
+
+
+def _with_dots(graph: Graph, dots: Mapping[Port, tuple[Place, ...]]) -> Graph:
+    """A graph where some links pass new dots and no others; those at one place on links of one socket are the same."""
+    graph = tidy_routes(with_routes(graph, dict.fromkeys(dots, ())))
+    taken = {dot.name for dot in list_decor(graph, "dot")}
+    fresh = (name for name in map("d{}".format, count(1)) if name not in taken)
+    names: dict[tuple[Port, Place], str] = {}
+    for target in sorted(dots):
+        for place in dots[target]:
+            if (graph.links[target], place) not in names:
+                names[graph.links[target], place] = next(fresh)
+    graph = with_places(graph, {ElementId.of("dot", name): place for (_, place), name in names.items()})
+    routes = {target: [names[graph.links[target], place] for place in places] for target, places in dots.items()}
+    return with_routes(graph, routes)

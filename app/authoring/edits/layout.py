@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable
 
-from ...graph import Graph
+from ...graph import Graph, Port
 from .element_id import ElementId
 from .elements import Place, Places, Sizes, can_be_linked, list_elements, place, with_places
-from .layers import place_boxes
+from .layering import Tie
+from .layers import draw_layers
+from .pins import Pins, pin_height
 from .sizes import element_size
 
 GAP = (80.0, 40.0)
@@ -51,26 +53,49 @@ def pin_places(graph: Graph, before: Graph | None = None) -> Graph:
 
 def lay_out(graph: Graph, elements: Collection[ElementId], sizes: Sizes | None = None) -> dict[ElementId, Place]:
     """A layered layout of some nodes and ends, from 0,0 on; parts that are not linked lie below each other."""
+    return lay_out_links(graph, elements, sizes)[0]
+
+
+def lay_out_links(
+    graph: Graph, elements: Collection[ElementId], sizes: Sizes | None = None, pins: Pins | None = None
+) -> tuple[dict[ElementId, Place], dict[Port, tuple[Place, ...]]]:
+    """A layered layout, and points through which each link, by target, meets no element on its way."""
     rest = {key: element_size(graph, key, sizes) for key in list_elements(graph) if key in set(elements)}
     links = [pair for pair in element_links(graph) if pair[0] in rest and pair[1] in rest]
+    ties = {target: tie for target, tie in _list_ties(graph, pins).items() if tie.start in rest and tie.end in rest}
     places: dict[ElementId, Place] = {}
+    bends: dict[Port, tuple[Place, ...]] = {}
     top, unlinked = 0.0, list[ElementId]()
     for part in _find_connected_parts(list(rest), links):
         if len(part) == 1:
             unlinked += part
             continue
-        boxes: dict[str, tuple[float, float]] = {key: rest[key] for key in part}
-        inside = [(start, end) for start, end in links if start in boxes]
+        boxes: dict[str, Place] = {key: rest[key] for key in part}
+        inside = {target: tie for target, tie in ties.items() if tie.start in boxes}
         ends = [key for key in part if key.kind == "output"]
         starts = [key for key in part if key.kind == "input"]
-        spots = place_boxes(part, inside, boxes, starts, ends, GAP)
-        places |= {key: (spots[key][0], spots[key][1] + top) for key in part}
-        top += max(spots[key][1] + boxes[key][1] for key in part) + GAP[1]
+        drawing = draw_layers(part, inside.values(), boxes, starts, ends, GAP)
+        places |= {key: (drawing.places[key][0], drawing.places[key][1] + top) for key in part}
+        bends |= {target: tuple((x, y + top) for x, y in drawing.bends.get(tie, ())) for target, tie in inside.items()}
+        top += drawing.height + GAP[1]
     x = 0.0
     for key in unlinked:
         places[key] = (x, top)
         x += rest[key][0] + GAP[0]
-    return places
+    return places, bends
+
+
+def _list_ties(graph: Graph, pins: Pins | None) -> dict[Port, Tie]:
+    """All links by target, with the heights of their sockets."""
+    return {
+        target: Tie(
+            ElementId.of_port(source),
+            ElementId.of_port(target),
+            pin_height(graph, source, True, pins),
+            pin_height(graph, target, False, pins),
+        )
+        for target, source in sorted(graph.links.items())
+    }
 
 
 def element_links(graph: Graph) -> list[tuple[ElementId, ElementId]]:

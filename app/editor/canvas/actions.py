@@ -318,7 +318,7 @@ GRAPH: tuple[Action[CanvasContext], ...] = (
     Action(
         "layout.arrange",
         "Arrange",
-        lambda context: context.session.apply(ArrangeElements(reserve_pictures(context))),
+        lambda context: context.session.apply(ArrangeElements(reserve_pictures(context), context.canvas.pins)),
         "Graph",
         "L",
         "graph",

@@ -10,13 +10,14 @@ from imgui_bundle import imgui
 
 from ...authoring.edits.element_id import NO_ELEMENT, ElementId
 from ...authoring.edits.elements import entry
+from ...authoring.edits.link_curves import make_curve
 from ...graph import Graph, Port
 from ..theme.style import ui_scale
 from ..toolkit.words import show_tip
 from .brush import DETAILS_FROM, DrawContext, TextCache, make_canvas_colors
 from .crumbs import draw_crumbs
 from .frame import CanvasFrame
-from .geometry import Point, Rect, contains, find_bounds, fit_view, make_curve, make_transform, overlaps, reveal_rect
+from .geometry import Point, Rect, contains, find_bounds, fit_view, make_transform, overlaps, reveal_rect
 from .gestures import Band, CutGesture, Idle, LinkGesture, MoveGesture, ResizeGesture, make_band_rect
 from .hints import explain_tool, hint_at_beginning
 from .layout import PICTURE
@@ -134,7 +135,7 @@ class Canvas:
         self._paint(brush, frame)
         self._draw_overlays(brush, frame)
         brush.draw.pop_clip_rect()
-        view.sizes = scene.sizes
+        view.sizes, view.pins = scene.sizes, scene.pins
         self._places.record(self._mouse.preview.scene, brush)
 
     # --- before painting ---------------------------------------------------------------------------------------------

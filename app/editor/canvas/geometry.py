@@ -9,14 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...authoring.edits.link_curves import Curve
 from .view import MAX_ZOOM, MIN_ZOOM
 
 Point = tuple[float, float]
 Rect = tuple[float, float, float, float]
 """Left, top, right, bottom."""
-
-Curve = tuple[float, float, float, float, float, float, float, float]
-"""A cubic Bezier: start, two handles, end, each as x, y."""
 
 GRID = 8.0
 """The grid step; positions snap to a multiple of twice this step."""
@@ -24,7 +22,6 @@ GRID = 8.0
 SAMPLES = 24
 """The number of straight pieces that approximate a curve for distances and crossings."""
 
-_MIN_HANDLE, _MAX_HANDLE = 24.0, 200.0
 _MARGIN = 48.0
 """Pixels around what is shown as a whole; less in a small window."""
 
@@ -111,16 +108,6 @@ def span_rect(start: Point, end: Point) -> Rect:
 def snap_to_grid(number: float, step: float = GRID * 2) -> float:
     """The nearest line of the grid."""
     return math.floor(number / step + 0.5) * step
-
-
-def make_curve(x0: float, y0: float, x1: float, y1: float) -> Curve:
-    """The shape of a link: it leaves to the right and arrives from the left, with room to turn where it runs back."""
-    across, down = x1 - x0, abs(y1 - y0)
-    if across > 0:
-        handle = max(across * 0.5, min(_MIN_HANDLE, (across + down) * 0.5))
-    else:
-        handle = min(max(-across * 0.75 + down * 0.5, _MIN_HANDLE), _MAX_HANDLE)
-    return x0, y0, x0 + handle, y0, x1 - handle, y1, x1, y1
 
 
 def sample_curves(curves: NDArray[np.float64], count: int = SAMPLES) -> NDArray[np.float64]:

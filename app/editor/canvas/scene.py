@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import pairwise
 from typing import Literal
 
 from ...authoring.edits.element_id import NO_ELEMENT, ElementId
+from ...authoring.edits.link_curves import Curve, make_curve
 from ...graph import Port
-from .geometry import Curve, Point, Rect, contains, make_curve
+from .geometry import Point, Rect, contains
 from .layout import HEADER, ROW, NodeLayout, Pin
 from .link_index import LinkIndex, Wire
 
@@ -75,10 +77,15 @@ class CanvasScene:
         """Links by target."""
         return self.links.by_target
 
-    @property
+    @cached_property
     def sizes(self) -> dict[ElementId, tuple[float, float]]:
         """Width and height of every element."""
         return {key: (box.w, box.h) for key, box in self.boxes.items()}
+
+    @cached_property
+    def pins(self) -> dict[tuple[Port, bool], float]:
+        """How far below the top of its element each socket is, by port and whether it is an output."""
+        return {(port, output): pin.y for output in (False, True) for port, _, pin in self.list_pins(output)}
 
     def move(self, keys: Collection[ElementId], dx: float, dy: float) -> CanvasScene:
         """A scene with some elements moved; links follow."""

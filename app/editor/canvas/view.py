@@ -8,6 +8,7 @@ from typing import Literal
 
 from ...authoring.edits.element_id import NO_ELEMENT, ElementId
 from ...authoring.edits.elements import Sizes
+from ...authoring.edits.pins import Pins
 
 MIN_ZOOM, MAX_ZOOM = 0.08, 4.0
 
@@ -28,6 +29,8 @@ class CanvasView:
     """The canvas position under the mouse when it was last over the panel: where new things go."""
     sizes: Sizes | None = None
     """Width and height of elements as drawn last, in canvas units."""
+    pins: Pins | None = None
+    """How far below the tops of elements their sockets were drawn last, in canvas units."""
     hovered: bool = False
     """True while the mouse is over the canvas."""
     panning: bool = False

@@ -9,8 +9,9 @@ from halation.authoring.edits.align import align_elements
 from halation.authoring.edits.arranging import arrange
 from halation.authoring.edits.decor import add_frame, find_frame_members
 from halation.authoring.edits.element_id import ElementId
-from halation.authoring.edits.elements import list_elements, with_places
-from halation.authoring.edits.layers import layer_numbers, place_boxes
+from halation.authoring.edits.elements import list_decor, list_elements, with_places
+from halation.authoring.edits.layering import layer_numbers
+from halation.authoring.edits.layers import place_boxes
 from halation.authoring.edits.layout import element_links, pin_places, positions, shift_off
 from halation.authoring.edits.routes import add_dot
 from halation.authoring.edits.sizes import element_size
@@ -88,15 +89,19 @@ def test_arranging_a_part_leaves_the_rest():
     assert {key: spots[key] for key in ("n0", "n3")} == {key: positions(graph)[key] for key in ("n0", "n3")}
 
 
-def test_arranging_takes_frames_and_dots_along():
+def test_arranging_takes_frames_along():
     graph = with_places(pin_places(chain(2)), {ElementId("n0"): (0.0, 300.0), ElementId("n1"): (40.0, 800.0)})
     graph, frame = add_frame(graph, [ElementId("n0"), ElementId("n1")], positions(graph))
-    graph, dot = add_dot(graph, Port("n1", "image"), (5.0, 5.0))
     members = find_frame_members(graph, frame, positions(graph))
     after = arrange(graph, None, positions(graph))
-    spots = positions(after)
-    assert find_frame_members(after, frame, spots) >= {"n0", "n1"} <= members
-    assert spots["n0"][0] < spots[dot][0] < spots["n1"][0]
+    assert find_frame_members(after, frame, positions(after)) >= {"n0", "n1"} <= members
+
+
+def test_arranging_removes_dots_that_links_do_not_need():
+    graph, _ = add_dot(pin_places(chain(3)), Port("n1", "image"), (5.0, 5.0))
+    graph, other = add_dot(graph, Port("n2", "image"), (7.0, 5.0))
+    assert set(list_decor(arrange(graph, None, positions(graph)), "dot")) == set()
+    assert set(list_decor(arrange(graph, {ElementId("n0"), ElementId("n1")}, positions(graph)), "dot")) == {other}
 
 
 def test_alignment():

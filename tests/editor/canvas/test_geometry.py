@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from halation.authoring.edits.link_curves import make_curve
 from halation.editor.canvas.geometry import (
     find_bounds,
     find_crossed,
@@ -11,7 +12,6 @@ from halation.editor.canvas.geometry import (
     find_midpoint,
     find_pan_direction,
     fit_view,
-    make_curve,
     make_transform,
     measure_distances,
     sample_curves,
