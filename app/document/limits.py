@@ -24,6 +24,25 @@ LEAST_CODE = 200
 MAX_NODES = 100_000
 """Nodes after every group is expanded: a few files that hold each other twice would otherwise make billions."""
 
+MAX_ENDS = 10_000
+"""Inputs, outputs and controls of one graph or group. Chosen by judgement: far more than a node can show."""
+
+MAX_ALL_ENDS = MAX_NODES
+"""Those of a graph and all groups in its file together. Each takes longer than a node (measured)."""
+
+MAX_LINKS = 3 * MAX_NODES
+"""Links of a graph and all groups in its file. Three for each node: most nodes have one or two inputs."""
+
+MAX_KEYS = 250_000
+"""Keys of all values together: one for each frame of a film of two hours, and half as many again."""
+
+MAX_WORDS = 5 * MAX_NODES
+"""Words and signs of all formulas together, of which equal formulas count once: five for each of 100,000 nodes. To read
+them takes two or three seconds."""
+
+MAX_ALLOWED = 10_000
+"""Warnings that a file allows. Chosen by judgement: ten times what `halation check` reports."""
+
 
 def size_fault(count: int) -> str | None:
     """Why a file of `count` bytes is refused, or None."""

@@ -30,11 +30,13 @@ class Positions:
     """The lines on which parts of a text begin: an entry of an object at its key, one of a list at itself.
 
     `paths` are all that will be asked for, as errors write them. The text is taken to be JSON; of one that is damaged,
-    the part before the damage is known.
+    the part before the damage is known. With `first` nobody asks for the last of several keys: what comes behind all of
+    the paths is then not read.
     """
 
-    def __init__(self, text: str, paths: Iterable[str]) -> None:
-        self._places = _find_places(text, _prefixes(paths))
+    def __init__(self, text: str, paths: Iterable[str], *, first: bool = False) -> None:
+        asked_paths = frozenset(paths)
+        self._places = _find_places(text, _prefixes(asked_paths), set(asked_paths) if first else set())
         self._lines = _count_lines(text, {offset for offsets in self._places.values() for offset in offsets})
 
     def __contains__(self, path: str) -> bool:
@@ -75,11 +77,12 @@ def _prefixes(paths: Iterable[str]) -> frozenset[str]:
     return frozenset(prefixes)
 
 
-def _find_places(text: str, prefixes: frozenset[str]) -> dict[str, tuple[int, int]]:
+def _find_places(text: str, prefixes: frozenset[str], missing: set[str]) -> dict[str, tuple[int, int]]:
     """Where in the text each part of these paths begins, the first time and the last.
 
     It reads only what leads to these paths and skips the rest by regular expressions: a parser in Python would read
-    every character of a large file. A name that stands twice has two places, of which JSON takes the last.
+    every character of a large file. A name that stands twice has two places, of which JSON takes the last. It ends as
+    soon as all paths that were `missing` are found, if any were.
     """
     begin = len(text) - len(text.lstrip())
     places = {"": (begin, begin)}
@@ -93,6 +96,10 @@ def _find_places(text: str, prefixes: frozenset[str]) -> dict[str, tuple[int, in
             if part in prefixes:
                 here = token.start(1 if word else 2)
                 places[part] = places.get(part, (here, here))[0], here
+                if part in missing:
+                    missing.remove(part)
+                    if not missing:
+                        break
         if bracket in ("}", "]"):
             if not above:
                 break

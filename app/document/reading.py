@@ -33,7 +33,7 @@ from ..graph.animation import adapt_animation
 from ..graph.graph import find_setting
 from ..graph.model import MAX_GROUP_DEPTH
 from ..graph.named_items import find_item_faults, split_unknown
-from ..graph.names import did_you_mean, name_fault
+from ..graph.names import did_you_mean, find_name_fault, name_fault
 from ..graph.values import coerce, describe_type
 from ..resources.sandbox import Sandbox
 from . import limits, records
@@ -43,6 +43,7 @@ from .disk import list_graph_files, read_text, resolve_file
 from .migrations import MIGRATIONS, Migration, migrate, newest
 from .records import convert, read_type, unknown_keys
 from .syntax import member, parse, word
+from .tally import PartTally
 
 Types = Mapping[str, type[Node]]
 Migrations = Mapping[int, Migration]
@@ -92,6 +93,7 @@ class _DocumentLoader(Struct):
     shared: dict[bytes, tuple[Item, bool]] = field(default_factory=dict[bytes, tuple[Item, bool]])
     """Nodes that were read, and whether they are muted, by their text."""
     code: CodeTally = field(default_factory=CodeTally)
+    parts: PartTally = field(default_factory=PartTally)
 
     def load_file(self, path: Path, sandbox: Sandbox, outer: tuple[Path, ...] = ()) -> tuple[Graph, int]:
         """The graph in a file, and how many nodes it has when all groups are expanded."""
@@ -136,17 +138,22 @@ class _BodyReader(Struct):
         reader = _BodyReader(self.loading, self.file, self.folder, self.outer)
         record = convert(raw, records.GraphRecord, self.file, at)
         reader.keep_unknown("", raw, records.GraphRecord)
+        if refusal := self.loading.parts.add(record):
+            raise DocumentError(self.file, member(at, refusal[0]), refusal[1])
         settings = convert(record.settings, records.SettingsRecord, self.file, member(at, "settings"))
         reader.keep_unknown("settings", record.settings, records.SettingsRecord)
         color = convert(settings.color, records.ColorRecord, self.file, member(at, "settings.color"))
         reader.keep_unknown("settings.color", settings.color, records.ColorRecord)
         nodes, muted, count, section = dict[str, Item](), set[str](), 0, member(at, "nodes")
+        has_odd_names = find_name_fault(record.nodes, "node") is not None
         for id, node in record.nodes.items():
-            where = reader.entry_path(section, id, "node")
-            nodes[id], number, is_muted = reader.read_entry(id, node, where, depth)
+            if has_odd_names:
+                reader.entry_path(section, id, "node")
+            nodes[id], number, is_muted = reader.read_entry(id, node, section, depth)
             count += number
             if count > limits.MAX_NODES:
-                raise DocumentError(self.file, where, f"with all groups there are more than {limits.MAX_NODES} nodes")
+                fault = f"with all groups there are more than {limits.MAX_NODES} nodes"
+                raise DocumentError(self.file, member(section, id), fault)
             if is_muted:
                 muted.add(id)
         graph = Graph(
@@ -237,8 +244,8 @@ class _BodyReader(Struct):
             self.keep_unknown(f"animation.{target}", item, records.AnimationRecord)
         return animations
 
-    def read_entry(self, id: str, raw: Any, at: str, depth: int) -> tuple[Item, int, bool]:
-        """A node, how many nodes it has when groups are expanded, and whether it is muted.
+    def read_entry(self, id: str, raw: Any, section: str, depth: int) -> tuple[Item, int, bool]:
+        """A node of a section, how many nodes it has when groups are expanded, and whether it is muted.
 
         Nodes are immutable, and many are written alike: such nodes are one object, which is read once. A node is not
         shared if something of it is kept in `extra`, or if it may read a file.
@@ -246,7 +253,8 @@ class _BodyReader(Struct):
         text = msgspec.json.encode(raw)
         if (node := self.loading.shared.get(text)) is not None:
             return node[0], 1, node[1]
-        common, unknown_count = convert(raw, records.TypeRecord, self.file, at), len(self.extra)
+        at, unknown_count = member(section, id), len(self.extra)
+        common = convert(raw, records.TypeRecord, self.file, at)
         item, count = self.read_item(id, raw, common.type, at, depth)
         if common.type not in _LANGUAGES and not isinstance(item, Group) and len(self.extra) == unknown_count:
             self.loading.shared[text] = item, common.muted

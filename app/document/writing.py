@@ -19,7 +19,7 @@ from ..custom_nodes import CustomNode
 from ..errors import GraphError, OutputError
 from ..graph import Control, Graph, Group, Input, Item, Output, Port, Settings, Unknown, find_declaration, signature
 from ..graph.named_items import describe_items
-from ..graph.names import name_fault
+from ..graph.names import find_name_fault
 from ..graph.scalars import describe_scalar
 from ..graph.values import coerce, describe_type
 from ..resources.atomic_write import write_text_atomically
@@ -239,6 +239,5 @@ def _check_names(graph: Graph) -> None:
     """Refuse values that could not be read again."""
     sections = {"input": graph.inputs, "output": graph.outputs, "control": graph.controls, "node": graph.nodes}
     for end_kind, section in sections.items():
-        for name in section:
-            if fault := name_fault(name, end_kind):
-                raise GraphError(fault)
+        if fault := find_name_fault(section, end_kind):
+            raise GraphError(fault)

@@ -16,7 +16,7 @@ from .graph import Graph, Group, Item
 from .keys import Keys, round_keys
 from .lookup import split_socket
 from .model import Port, Settings
-from .names import did_you_mean
+from .names import can_compare_all, did_you_mean
 from .scalars import coerce_scalar, describe_type
 from .walk import find_cyclic
 
@@ -84,8 +84,14 @@ def find_expression_loops(graph: Graph) -> Iterator[tuple[Port, str]]:
 def find_named_value(graph: Graph, name: str) -> tuple[Port, int | None]:
     """The value, and its channel if any, that a name in an expression means: `glow`, `bloom.intensity`, `move.by.x`.
 
-    Raises GraphError with a suggestion.
+    Raises GraphError with a suggestion. What a name means is looked for once in a graph.
     """
+    if (known := graph.named_values.get(name)) is None:
+        known = graph.named_values[name] = _find_named_value(graph, name)
+    return known
+
+
+def _find_named_value(graph: Graph, name: str) -> tuple[Port, int | None]:
     head, *rest = name.split(".")
     if head in graph.controls and head not in graph.nodes:
         start = graph.controls[head].target
@@ -97,7 +103,7 @@ def find_named_value(graph: Graph, name: str) -> tuple[Port, int | None]:
             return Port(head, rest[0]), None  # the usual case
         start, item, words = Port(head, ""), graph.node(head), rest
     else:
-        names = [*graph.controls, *(f"{node}." for node in graph.nodes)]
+        names = [*graph.controls, *(f"{node}." for node in graph.nodes)] if can_compare_all(graph.nodes) else ()
         raise GraphError(f"there is no control '{head}'{did_you_mean(head, names)}")
     socket, rest = split_socket(item, words)
     port = Port(start.node, socket)

@@ -97,12 +97,17 @@ class Graph(Wired[Item], EndEdits):
     def node(self, id: str) -> Item:
         """The node of an id. Raises GraphError with a suggestion."""
         if id not in self.nodes:
-            raise GraphError(f"there is no node '{make_printable(id)}'{did_you_mean(id, self.nodes)}")
+            raise GraphError(_explain_missing_node(id, self.nodes))
         return self.nodes[id]
 
     def source(self, port: Port) -> Socket | None:
         """The output at `port`, in the type that it follows; None for a node of unknown type. Raises GraphError."""
         return self.field_outputs.get(port) or self.declared_source(port)
+
+    @cached_property
+    def named_values(self) -> dict[str, tuple[Port, int | None]]:
+        """What names in expressions mean, as far as was asked: see `find_named_value`, which fills it."""
+        return {}
 
     @cached_property
     def field_outputs(self) -> Mapping[Port, Socket]:
@@ -132,6 +137,8 @@ class Graph(Wired[Item], EndEdits):
 
     def link_fault(self, source: Port, target: Port) -> str | None:
         """Why a link from `source` to `target` is invalid, or None. Loops are not checked."""
+        if source.node not in self.nodes and source.node != INPUTS:
+            return _explain_missing_node(source.node, self.nodes)
         try:
             start, end = self.declared_source(source), self.target(target)
         except GraphError as error:
@@ -327,6 +334,10 @@ class Graph(Wired[Item], EndEdits):
 def signature(item: Item) -> Signature:
     """The sockets and values of a node. Those of a group are the inputs, outputs and controls of its body."""
     return class_signature(type(item)) if isinstance(item, Node) else item.signature
+
+
+def _explain_missing_node(id: str, nodes: Mapping[str, Item]) -> str:
+    return f"there is no node '{make_printable(id)}'{did_you_mean(id, nodes)}"
 
 
 def control_value(graph: Graph, name: str) -> Value | None:

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Mapping
 from typing import TypeVar
 
 from ..errors import GraphError
-from ..resources.suggestions import may_compare
+from ..resources.suggestions import can_compare, may_compare
 
 INPUTS, OUTPUTS = "inputs", "outputs"
 """The node ids in links that stand for the inputs and outputs of the graph itself."""
@@ -24,7 +24,7 @@ T = TypeVar("T")
 
 def did_you_mean(name: str, names: Collection[str]) -> str:
     """The end of a sentence about an unknown name: the most similar of `names`, or a short list of them, or ""."""
-    if len(name) > _MAX_LENGTH or len(names) > _MAX_NAMES or not may_compare(len(names)):
+    if len(name) > _MAX_LENGTH or not can_compare_all(names) or not may_compare(len(names)):
         return ""
     lowered = {item.lower(): item for item in sorted(names, reverse=True) if len(item) <= _MAX_LENGTH}
     if near := difflib.get_close_matches(name.lower(), lowered, n=1):
@@ -32,6 +32,11 @@ def did_you_mean(name: str, names: Collection[str]) -> str:
     if 0 < len(lowered) <= _MAX_LISTED:
         return f"; there is {', '.join(sorted(lowered.values()))}"
     return ""
+
+
+def can_compare_all(names: Collection[str]) -> bool:
+    """False if an unknown name is not compared with so many others, or after so many faults."""
+    return can_compare() and len(names) <= _MAX_NAMES
 
 
 def make_printable(name: str) -> str:
@@ -55,6 +60,17 @@ def name_fault(name: str, subject: str) -> str | None:
     if subject == "node" and name in (INPUTS, OUTPUTS):
         return f"a node cannot be called '{name}': that name stands for the ends of the graph"
     return None
+
+
+def find_name_fault(names: Mapping[str, object], subject: str) -> str | None:
+    """What `name_fault` says about the first name that cannot be one, or None. Most files have none: all are looked at
+    together, since there may be 100,000.
+    """
+    letters = "".join(names)
+    is_plain = letters.isprintable() and "." not in letters and "/" not in letters
+    if is_plain and "" not in names and (subject != "node" or not (INPUTS in names or OUTPUTS in names)):
+        return None
+    return next((fault for name in names if (fault := name_fault(name, subject))), None)
 
 
 def check_name(name: str, subject: str, used_names: Iterable[str] = ()) -> None:

@@ -18,7 +18,7 @@ from .evaluate_at_frame import animation_fault, find_expression_loops
 from .graph import Graph, Group, Item, find_setting, signature
 from .model import MAX_GROUP_DEPTH, Input, Port, Unknown
 from .named_items import find_item_faults
-from .names import INPUTS, OUTPUTS, did_you_mean, name_fault, pick
+from .names import INPUTS, OUTPUTS, did_you_mean, find_name_fault, name_fault, pick
 from .rules import Rule, Severity
 from .unknown_nodes import explain_unknown
 from .unmerged import CONFLICTS, find_unmerged
@@ -97,12 +97,13 @@ def _inside(graph: Graph, node_types: Mapping[str, type[Node]], depth: int) -> I
     yield from _links(graph)
     needed = graph.upstream(OUTPUTS)
     sound_nodes = set[int]()  # files that say the same of many nodes make one object of them
+    has_odd_names = find_name_fault(graph.nodes, "node") is not None
     for id, item in graph.nodes.items():
-        if fault := name_fault(id, "node"):
+        if has_odd_names and (fault := name_fault(id, "node")):
             yield Problem(id, "", fault, rules.BAD_NAME)
         if isinstance(item, Unknown):
             sentence, rule = explain_unknown(id, item, node_types)
-            yield Problem(id, "", sentence, rule)
+            yield Problem(id, "", sentence, rule, f"nodes.{id}")
             continue
         if builtins.id(item) not in sound_nodes:
             value_problems = [*_values(id, item)]
@@ -112,17 +113,13 @@ def _inside(graph: Graph, node_types: Mapping[str, type[Node]], depth: int) -> I
         yield from _check_inputs(graph, id, item, id in needed)
         if isinstance(item, Group):
             yield from _group(id, item, node_types, depth)
-    for loop in find_loops(_sort_feeding(graph)) if has_loops(graph.feeding) else ():
+    feeding = {id: graph.feeding[id] for id in graph.nodes}
+    for loop in find_loops(feeding, in_order=True) if has_loops(feeding) else ():
         yield Problem(loop[0], "", describe_loop(loop), rules.LOOP)
     yield from _animations(graph)
     yield from _leftovers(graph)
     for node, socket, sentence, at in find_unmerged(graph.extra):
         yield Problem(node, socket, sentence, rules.UNMERGED, at)
-
-
-def _sort_feeding(graph: Graph) -> dict[str, list[str]]:
-    """The nodes that feed each node, in an order that does not change, so that the same loop is always named."""
-    return {id: sorted(graph.feeding[id]) for id in sorted(graph.nodes)}
 
 
 def _animations(graph: Graph) -> Iterator[Problem]:
@@ -169,7 +166,8 @@ def _check_inputs(graph: Graph, id: str, item: Item, needed: bool) -> Iterator[P
             # A node that nothing uses yet is unfinished, not wrong.
             rule = rules.UNLINKED_INPUT if needed else rules.UNFINISHED_NODE
             article = "an" if socket.kind[0] in "AEIOU" else "a"
-            yield Problem(id, name, f"'{id}.{name}' is not linked: it needs {article} {socket.kind}", rule)
+            sentence = f"'{id}.{name}' is not linked: it needs {article} {socket.kind}"
+            yield Problem(id, name, sentence, rule, f"nodes.{id}")
 
 
 def _values(id: str, item: Item) -> Iterator[Problem]:
@@ -185,11 +183,11 @@ def _values(id: str, item: Item) -> Iterator[Problem]:
                 place = ".".join((name, *path))
                 yield Problem(id, name, f"{id}.{place}: {fault}", rules.BAD_VALUE, f"nodes.{id}.values.{place}")
         elif setting is not value.default and (fault := value_fault(value, setting)):
-            yield Problem(id, name, f"{id}.{name}: {fault}", rules.BAD_VALUE)
+            yield Problem(id, name, f"{id}.{name}: {fault}", rules.BAD_VALUE, f"nodes.{id}.values.{name}")
     for name in item.values if isinstance(item, Group) else ():
         if name not in values:
             sentence = f"group '{id}' has no control '{name}'{did_you_mean(name, values)}"
-            yield Problem(id, name, sentence, rules.UNKNOWN_CONTROL)
+            yield Problem(id, name, sentence, rules.UNKNOWN_CONTROL, f"nodes.{id}.values.{name}")
 
 
 def _ends(graph: Graph) -> Iterator[Problem]:
@@ -205,7 +203,7 @@ def _ends(graph: Graph) -> Iterator[Problem]:
             yield Problem(OUTPUTS, name, fault, rules.BAD_NAME)
         if Port(OUTPUTS, name) not in graph.links:
             sentence = f"nothing feeds the output '{name}': link a node to '{OUTPUTS}.{name}'"
-            yield Problem(OUTPUTS, name, sentence, rules.UNFED_OUTPUT)
+            yield Problem(OUTPUTS, name, sentence, rules.UNFED_OUTPUT, f"outputs.{name}")
     for name, control in graph.controls.items():
         if fault := name_fault(name, "control"):
             yield Problem(CONTROLS, name, fault, rules.BAD_NAME)

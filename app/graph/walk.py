@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from graphlib import CycleError, TopologicalSorter
 from types import MappingProxyType
@@ -56,14 +56,19 @@ def has_loops(steps: Mapping[N, Collection[N]]) -> bool:
     return len(removed) < len(steps)
 
 
-def find_loops(steps: Steps, max_count: int = _REPORTED_LOOPS) -> tuple[tuple[str, ...], ...]:
+def find_loops(
+    steps: Steps, max_count: int = _REPORTED_LOOPS, *, in_order: bool = False
+) -> tuple[tuple[str, ...], ...]:
     """Up to `max_count` loops that share no name, each as `a, b, a`: a name is after one that it leads to.
 
-    In one walk: the names of a loop are left out as soon as it is known, and from a name that was left behind without a
-    loop none can come later.
+    With `in_order`, names are walked in their order, so that the same loops are always found. In one walk: the names of
+    a loop are left out as soon as it is known, and from a name that was left behind without a loop none can come later.
     """
     loops_found, done = list[tuple[str, ...]](), set[str]()
-    for root in steps:
+    sort: Callable[[Iterable[str]], Iterable[str]] = sorted if in_order else iter
+    for root in sort(steps):
+        if len(loops_found) == max_count:
+            break
         path, rests = dict[str, None](), list[Iterator[str]]()
         after: str | None = root
         while after is not None and len(loops_found) < max_count:
@@ -76,7 +81,7 @@ def find_loops(steps: Steps, max_count: int = _REPORTED_LOOPS) -> tuple[tuple[st
                 done.update(loop)
             elif after not in done and after in steps:
                 path[after] = None
-                rests.append(iter(steps[after]))
+                rests.append(iter(sort(steps[after])))
             while rests and (after := next(rests[-1], None)) is None:
                 done.add(path.popitem()[0])
                 rests.pop()

@@ -175,7 +175,8 @@ class GraphChecker(Struct, dict=True, eq=False):
         # The worst findings are kept; `sorted` keeps the order of equal ones.
         chosen = sorted(reported, key=lambda item: -item[2])[:MAX_FINDINGS]
         places = [() if line else _find_places(whole_graph, problem) for problem, line, _ in chosen]
-        lines = Positions(text, chain.from_iterable(places))
+        has_double_key = any(problem.rule is texts.DOUBLE_KEY for problem, _, _ in chosen)
+        lines = Positions(text, chain.from_iterable(places), first=not has_double_key)
         findings = [
             Finding(line or _line(lines, paths, problem), problem, code)
             for (problem, line, code), paths in zip(chosen, places, strict=True)

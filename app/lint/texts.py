@@ -86,10 +86,10 @@ def find_text_problems(graph: Graph, text: str, types: Mapping[str, type[Node]])
 
 def _grown(graph: Graph) -> bool:
     """True if some nodes have a type with several versions."""
-    return any(
-        _grown(item.graph) if isinstance(item, Group) else (isinstance(item, Node) and item.version > 1)
-        for item in graph.nodes.values()
-    )
+    kinds = set(map(type, graph.nodes.values()))
+    if any(issubclass(kind, Node) and kind.version > 1 for kind in kinds):
+        return True
+    return Group in kinds and any(_grown(item.graph) for item in graph.nodes.values() if isinstance(item, Group))
 
 
 def _old(raw: Mapping[str, Any], types: Mapping[str, type[Node]], at: str) -> Iterator[Problem]:

@@ -26,6 +26,12 @@ def limit_suggestions() -> Generator[None]:
             _COMPARISONS_LEFT.reset(token)
 
 
+def can_compare() -> bool:
+    """False if nothing may be compared any more, which is sooner known than whether so many names may be."""
+    left = _COMPARISONS_LEFT.get()
+    return left is None or left[0] >= _LEAST_COMPARISONS
+
+
 def may_compare(count: int = 0) -> bool:
     """True if an unknown name may be compared with so many others, which then count as compared."""
     left = _COMPARISONS_LEFT.get() or [MAX_COMPARISONS]

@@ -35,22 +35,25 @@ def list_paths(graph: Graph) -> Iterator[tuple[str, str, str, str]]:
     for name, end in graph.inputs.items():
         if end.file:
             yield INPUTS, name, f"inputs.{name}.file", end.file
+    names_by_kind = {kind: _list_path_names(kind) for kind in set(map(type, graph.nodes.values()))}
     for id, item in graph.nodes.items():
-        if isinstance(item, Node):
-            values = item.values
-            if isinstance(item, CustomNode) and item.code.file:
-                yield id, "", f"nodes.{id}.file", item.code.file
-        else:
-            values = signature(item).values
-            if isinstance(item, Group) and item.path:
+        names = names_by_kind[type(item)]
+        if isinstance(item, Group):
+            names = tuple(name for name, value in signature(item).values.items() if value.type == "path")
+            if item.path:
                 yield id, "", f"nodes.{id}.path", item.path
-        for name, value in values.items():
-            if value.type != "path":  # most are none, and a graph may have 100,000 nodes
-                continue
-            path = item.setting(name) if isinstance(item, Node) else ""
-            path = item.values.get(name, "") if isinstance(item, Group) else path
+        elif isinstance(item, CustomNode) and item.code.file:
+            yield id, "", f"nodes.{id}.file", item.code.file
+        for name in names:
+            path = item.values.get(name, "") if isinstance(item, Group) else getattr(item, name)
             if isinstance(path, str) and path:
                 yield id, name, f"nodes.{id}.values.{name}", path
+
+
+def _list_path_names(kind: type) -> tuple[str, ...]:
+    """The values of a node type that are paths: most types have none, and a graph may have 100,000 nodes."""
+    values = kind.values if issubclass(kind, Node) else {}
+    return tuple(name for name, value in values.items() if value.type == "path")
 
 
 def is_absolute(path: str) -> bool:
