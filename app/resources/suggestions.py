@@ -37,6 +37,7 @@ def may_compare(count: int = 0) -> bool:
     left = _COMPARISONS_LEFT.get() or [MAX_COMPARISONS]
     cost = max(count, _LEAST_COMPARISONS)
     if cost > left[0]:
+        left[0] = 0  # the faults that follow need not ask
         return False
     left[0] -= cost
     return True
