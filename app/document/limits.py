@@ -37,8 +37,11 @@ MAX_KEYS = 250_000
 """Keys of all values together: one for each frame of a film of two hours, and half as many again."""
 
 MAX_WORDS = 5 * MAX_NODES
-"""Words and signs of all formulas together, of which equal formulas count once: five for each of 100,000 nodes. To read
-them takes two or three seconds."""
+"""Words and signs of all expressions together: five for each of 100,000 nodes. To read them takes two or three seconds.
+Of one that was there before only the dots count, one for each value that it reads: it is not read again."""
+
+MAX_FORMULA = 1000
+"""Letters of an expression that is read at all: `expressions.tokens.MAX_LENGTH`, which is loaded with the first one."""
 
 MAX_ALLOWED = 10_000
 """Warnings that a file allows. Chosen by judgement: ten times what `halation check` reports."""

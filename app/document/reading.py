@@ -30,7 +30,9 @@ from ..custom_nodes import Code, CodeFault, Language, node_type
 from ..errors import DocumentError, GraphError
 from ..graph import Animation, Control, Graph, Group, Input, Item, Output, Port, Settings, Unknown, signature
 from ..graph.animation import adapt_animation
+from ..graph.expressions import Expression
 from ..graph.graph import find_setting
+from ..graph.length_units import make_node
 from ..graph.model import MAX_GROUP_DEPTH
 from ..graph.named_items import find_item_faults, split_unknown
 from ..graph.names import did_you_mean, find_name_fault, name_fault
@@ -94,6 +96,7 @@ class _DocumentLoader(Struct):
     """Nodes that were read, and whether they are muted, by their text."""
     code: CodeTally = field(default_factory=CodeTally)
     parts: PartTally = field(default_factory=PartTally)
+    expressions: dict[str, Expression] = field(default_factory=dict[str, Expression])  # each text is parsed once
 
     def load_file(self, path: Path, sandbox: Sandbox, outer: tuple[Path, ...] = ()) -> tuple[Graph, int]:
         """The graph in a file, and how many nodes it has when all groups are expanded."""
@@ -240,6 +243,8 @@ class _BodyReader(Struct):
             where = member(section, target)
             value = find_setting(nodes[port.node], port.socket) if port.node in nodes else None
             animation = read_animation(item, self.file, where, value)
+            if isinstance(animation, Expression):
+                animation = self.loading.expressions.setdefault(animation.text, animation)
             animations[port] = adapt_animation(value, animation) if value else animation
             self.keep_unknown(f"animation.{target}", item, records.AnimationRecord)
         return animations
@@ -250,8 +255,7 @@ class _BodyReader(Struct):
         Nodes are immutable, and many are written alike: such nodes are one object, which is read once. A node is not
         shared if something of it is kept in `extra`, or if it may read a file.
         """
-        text = msgspec.json.encode(raw)
-        if (node := self.loading.shared.get(text)) is not None:
+        if (node := self.loading.shared.get(text := msgspec.json.encode(raw))) is not None:
             return node[0], 1, node[1]
         at, unknown_count = member(section, id), len(self.extra)
         common = convert(raw, records.TypeRecord, self.file, at)
@@ -287,7 +291,7 @@ class _BodyReader(Struct):
         if record.package and (record.version == kind.version or not kind.required_package):
             self.keep_package(id, record.package, kind)
         units = self.read_units(record.units, kind.values, at)
-        return _make_node(kind, self.read_values(f"nodes.{id}", values, kind.values, at), units)
+        return make_node(kind, self.read_values(f"nodes.{id}", values, kind.values, at), units)
 
     def keep_package(self, id: str, package: str, kind: type[Node]) -> None:
         """Note which plug-in a file asks for: it stays as it is until a newer version of the node type is saved."""
@@ -310,7 +314,7 @@ class _BodyReader(Struct):
             return Unknown(language, unknown_keys(raw, records.TypeRecord), reason)
         self.keep_unknown(f"nodes.{id}", raw, records.CodeRecord)
         units = self.read_units(record.units, kind.values, at)
-        return _make_node(kind, self.read_values(f"nodes.{id}", record.values, kind.values, at), units)
+        return make_node(kind, self.read_values(f"nodes.{id}", record.values, kind.values, at), units)
 
     def read_units(self, raw: Mapping[str, str], declared: Mapping[str, Value], at: str) -> LengthUnits:
         """The units of lengths. Raises DocumentError for a value that is no length, and for an unknown unit."""
@@ -357,8 +361,7 @@ class _BodyReader(Struct):
         """Named items without the kinds and fields that this version does not know, which are saved again."""
         assert value.items is not None
         known, unknown = split_unknown(value.items, objects)
-        for place, keys in unknown.items():
-            self.extra[".".join((path, *place))] = keys
+        self.extra |= {".".join((path, *place)): keys for place, keys in unknown.items()}
         return known
 
     def read_group(self, id: str, raw: dict[str, Any], at: str, depth: int) -> tuple[Group, int]:
@@ -391,14 +394,6 @@ class _BodyReader(Struct):
             loop = " -> ".join(file.name for file in (*self.outer[self.outer.index(real) :], real))
             raise DocumentError(self.file, at, f"a group cannot hold itself: {loop}")
         return self.loading.load_file(inner, sandbox, self.outer)
-
-
-def _make_node(kind: type[Node], values: Mapping[str, Any], units: LengthUnits) -> Node:
-    """A node. A length without a number has its default, converted to the unit that is chosen for it."""
-    if not units:
-        return kind(**values)
-    plain = kind().with_length_units(units)
-    return plain.with_values(**{name: plain.declaration(name).default for name, _ in units}).with_values(**values)
 
 
 def _newer(subject: str, newest_known: int) -> str:

@@ -41,10 +41,10 @@ class PartTally(Struct):
         for entry in record.animation.values():
             if isinstance(entry, dict):
                 self._add_animation(cast("Mapping[str, Any]", entry))
-        if self.keys > limits.MAX_KEYS:
-            yield "animation", _refuse(limits.MAX_KEYS, "keys", "of all values together")
-        if self.words > limits.MAX_WORDS:
-            yield "animation", _refuse(limits.MAX_WORDS, "words and signs", "in all expressions together")
+            if self.keys > limits.MAX_KEYS:
+                yield "animation", _refuse(limits.MAX_KEYS, "keys", "of all values together")
+            if self.words > limits.MAX_WORDS:
+                yield "animation", _refuse(limits.MAX_WORDS, "words and signs", "in all expressions together")
         allowed = record.settings.get("allow")
         if isinstance(allowed, dict) and len(cast("Mapping[str, Any]", allowed)) > limits.MAX_ALLOWED:
             yield "settings.allow", _refuse(limits.MAX_ALLOWED, "entries", "there")
@@ -53,9 +53,9 @@ class PartTally(Struct):
         keys, text = entry.get("keys"), entry.get("expression")
         if isinstance(keys, list):
             self.keys += len(cast("list[object]", keys))
-        if isinstance(text, str) and text not in self.formulas:
+        if isinstance(text, str) and len(text) <= limits.MAX_FORMULA:
+            self.words += text.count(".") if text in self.formulas else len(_WORD.findall(text))
             self.formulas.add(text)
-            self.words += len(_WORD.findall(text[: limits.MAX_WORDS + 1]))
 
 
 def _refuse(most: int, parts: str, where: str) -> str:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from halation.nodes import Node, Value, is_length, length_unit_fault, resolve_length_unit
+from collections.abc import Mapping
+from typing import Any
+
+from halation.nodes import LengthUnits, Node, Value, is_length, length_unit_fault, resolve_length_unit
 from msgspec import structs
 
 from ..errors import GraphError
@@ -45,3 +48,11 @@ def pin_node(node: Node, reference_height: int | None) -> Node:
         if is_length(value) and value.unit == "px" and (unit := resolve_length_unit(value.unit, reference_height))
     }
     return node.with_length_units(tuple((units | dict(node.length_units)).items()))
+
+
+def make_node(kind: type[Node], values: Mapping[str, Any], units: LengthUnits) -> Node:
+    """A node. A length without a number has its default, converted to the unit that is chosen for it."""
+    if not units:
+        return kind(**values)
+    plain = kind().with_length_units(units)
+    return plain.with_values(**{name: plain.declaration(name).default for name, _ in units}).with_values(**values)

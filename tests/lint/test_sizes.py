@@ -13,7 +13,9 @@ import numpy as np
 import pytest
 from halation.cli import options
 from halation.document import limits
+from halation.document.positions import Positions
 from halation.errors import DocumentError, InputError
+from halation.graph.names import can_compare_all
 from halation.inputs.provider import MediaProvider
 from halation.lint import compiled
 from halation.lint.checking import MAX_FINDINGS, CheckReport, GraphChecker
@@ -22,6 +24,7 @@ from halation.nodes import Kind
 from halation.resources.picture import Picture
 from halation.resources.provider import PictureProbe
 from halation.resources.sandbox import UNRESTRICTED
+from halation.resources.suggestions import limit_suggestions, may_compare
 from large_graphs import GRAPHS, TEXTS, chain, coded, fan, missing
 from msgspec.structs import replace
 from oiio_pictures import write_picture
@@ -97,7 +100,7 @@ def test_a_picture_outside_of_its_folder_says_nothing_about_others_of_its_name(t
         ("chain", 170),
         ("fan", 150),
         ("distinct", 240),
-        ("mistyped", 110),
+        ("mistyped", 85),
         ("mislinked", 200),
         ("deep", 170),
         ("animated", 400),
@@ -166,6 +169,29 @@ def test_a_thousand_findings_are_reported_and_the_others_counted() -> None:
     report = check(json.dumps(graph))
     assert len(report.findings) == MAX_FINDINGS and report.omitted >= 500
     assert report.code == 3 and "did you mean 'exposure'" in report.findings[1].problem.sentence
+
+
+def test_names_of_all_nodes_are_not_listed_for_each_fault() -> None:
+    """An expression that names no control was compared with all nodes, which were listed anew for each."""
+    graph = fan(1000)
+    graph["animation"] = {f"n{number}.stops": {"expression": f"odd{number} * 2"} for number in range(1000)}
+    report = check(json.dumps(graph))
+    assert len(report.findings) == MAX_FINDINGS and "there is no control 'odd0'" in report.findings[0].problem.sentence
+    with limit_suggestions():
+        while may_compare(20):
+            pass
+        assert not can_compare_all(["a"])
+
+
+def test_lines_behind_the_last_finding_are_not_read() -> None:
+    """The text of 99,000 nodes was read to its end for a fault in the first."""
+    nodes = {f"n{number}": {"type": "noise", "values": {"a": {}}} for number in range(2000)}
+    short, long = (json.dumps({"nodes": dict(list(nodes.items())[:count])}, indent=1) for count in (100, 2000))
+    paths = ("nodes.n1", "nodes.n7.values.a")
+    calls = [count_calls(lambda text=text: Positions(text, paths, first=True)) for text in (short, long)]
+    assert calls[0] == calls[1]
+    line = long.count("\n", 0, long.index('"n7"')) + 4  # the node, its type, its values, and the first of them
+    assert [Positions(long, paths, first=first).line(paths[1]) for first in (True, False)] == [line, line]
 
 
 def test_errors_are_not_left_out_for_warnings() -> None:
