@@ -54,6 +54,7 @@ REASONS: dict[str, Cause] = {
     "git is not installed": "tool",
     "not installed as a command": "tool",
     "glslangValidator is not installed": "tool",
+    "gdtoolkit is not installed": "tool",
     "slangpy is not installed": "tool",
     "there is no driver of Vulkan": "tool",
     "vkBasalt or Xvfb is not installed": "tool",

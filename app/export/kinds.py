@@ -44,6 +44,7 @@ KINDS: Mapping[str, ExportKind] = MappingProxyType(
                 "python", ".py", "a script of numpy and scipy, for papers and teaching", "python", "export_script", True
             ),
             ExportKind("reshade", ".fx", "an effect of ReShade, for games", "reshade.files", "export_effect"),
+            ExportKind("godot", "", "an effect for cameras of the game engine Godot", "godot.files", "export_godot"),
             ExportKind("cube", ".cube", "a table of colors with a shaper, for grading programs", "lut", "export_cube"),
             ExportKind("clf", ".clf", "a table in the Common LUT Format (SMPTE ST 2136)", "lut", "export_clf"),
             ExportKind("png", ".png", "a table as a strip of squares, for game engines", "lut", "export_strip"),

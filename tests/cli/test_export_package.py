@@ -244,6 +244,8 @@ def test_curves_are_polygons_and_grids_are_bilinear() -> None:
         many = {"base": [2.0, 0.0], "curves": [curve, {**curve, "knob": "b"}], "mode": "multiply"}
         twice = read_slot(many, {"a": x, "b": x})
         np.testing.assert_allclose(twice, [line[0] * line[0] / 2.0, 2.0 * line[1]], rtol=1e-6)
+        whole = read_slot({"base": [1, 2], "curves": [curve]}, {"a": x})  # as JSON spells numbers without a fraction
+        np.testing.assert_allclose(whole, line, rtol=1e-6)
 
 
 def test_the_settings_of_the_graph_keep_their_passes() -> None:

@@ -65,7 +65,7 @@ def write_slot(
 
 def read_slot(record: Record, point: Mapping[str, float], mode: str = "") -> Array:
     """The numbers of a slot at a point: what every reader of a package computes."""
-    base = np.array(record["base"])
+    base = np.array(record["base"], np.float64)
     numbers = base.copy()
     for curve in record.get("curves", ()):
         places, rows = np.array(curve["at"]), np.array(curve["values"])

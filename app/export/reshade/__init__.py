@@ -6,7 +6,7 @@ computes is written as code of ReShade FX:
 - `translation` writes a program of the compiler: Slang makes HLSL of it, of which ReShade FX is a dialect.
 - `numbers` writes the numbers that controls change as a small picture, drawn anew in each frame.
 - `pictures` stores files, tables and lists of numbers in PNG files, which ReShade reads.
-- `sources` fills the inputs of a graph: with the picture of the game, with its depth, and with normals made of it.
+- `sources` draws what the game gives: its picture, its depth, and normals made of it.
 - `controls` writes what a user changes, `programs` the functions of a pass.
 - `parts` collects textures, functions and passes; `effect` puts all together, and `files` writes it.
 """

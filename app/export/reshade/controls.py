@@ -2,25 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from typing import Any
 
+from ..engine_text import quote_text, write_float, write_name
 from ..package.curves import Record
-from .numbers import write_float
 
 FRAME = "frame"
-
-
-def write_name(name: str, prefix: str) -> str:
-    """A name of ReShade FX: letters of ASCII, digits and underscores."""
-    return f"{prefix}_{re.sub(r'[^A-Za-z0-9]+', '_', name)}"
-
-
-def quote_text(text: str) -> str:
-    """A text in quotation marks, on one line, without marks that would end it."""
-    line = " ".join("".join(letter if letter.isprintable() else " " for letter in text).split())
-    return f'"{line.replace(chr(92), "/").replace(chr(34), chr(39))}"'
 
 
 def write_controls(

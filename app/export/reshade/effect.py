@@ -8,16 +8,18 @@ from functools import cached_property
 from msgspec import Struct
 
 from ...errors import GraphError, describe_owner
+from ..engine_text import quote_text, write_name
+from ..game import DEPTH, NORMAL, choose_roles
 from ..order import ExportOrder
 from ..package import Package
 from ..package.curves import Record
 from ..shipped_files import read_shipped_text
-from .controls import FRAME, quote_text, write_controls, write_name, write_time
+from .controls import FRAME, write_controls, write_time
 from .numbers import NumberPicture
 from .parts import EffectParts, EffectPass
 from .pictures import PackedPictures
 from .programs import write_pass
-from .sources import DEPTH, NORMAL, choose_roles, write_sources
+from .sources import write_sources
 from .translation import FxProgram, write_fx
 
 _SCREEN = """sampler2D {texture}Smooth {{ Texture = {texture}; }};

@@ -10,13 +10,10 @@ from ...color.management import get_color_manager
 from ...errors import GraphError
 from ...graph import color_settings
 from ...resources.atomic_write import write_bytes_atomically, write_text_atomically
+from ..game import USUAL_SIZE, bind_blank, refuse_layers
 from ..order import ExportOrder, ExportReport
 from ..package import assemble_package
 from .effect import write_effect
-from .sources import bind_blank, refuse_layers
-
-USUAL_SIZE = (1920, 1080)
-"""The pixels of a game if nobody says: those of most screens (Steam hardware survey, 2025)."""
 
 
 def export_effect(order: ExportOrder) -> ExportReport:
@@ -27,7 +24,7 @@ def export_effect(order: ExportOrder) -> ExportReport:
         raise GraphError(
             "its working space is not linear Rec.709, which an effect of ReShade makes of the sRGB picture"
         )
-    refuse_layers(order.graph, order.target)
+    refuse_layers(order.graph, order.target, "an effect of ReShade")
     stem = re.sub(r"[^A-Za-z0-9_-]+", "_", output.stem)
     size = order.size or USUAL_SIZE
     order = msgspec.structs.replace(order, size=size, inputs={**order.inputs, **bind_blank(order.graph, size)})

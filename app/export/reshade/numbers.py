@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ..engine_text import write_float
 from ..package.curves import Record
 
 Array = np.ndarray
@@ -130,12 +131,6 @@ class NumberPicture:
             share = f"part({x}, {write_float(low)}, {write_float(high)}) / {write_float(high - low)}"
             lines.append(f"    here = lerp(here, {curve}, {share});")
         return [*lines, "    sum += here; }"]
-
-
-def write_float(number: float) -> str:
-    """A number as ReShade FX writes it, with the digits of 32 bits."""
-    text = f"{np.float32(number):.9g}"
-    return text if any(letter in text for letter in ".en") else f"{text}.0"
 
 
 def write_four(numbers: Array) -> str:

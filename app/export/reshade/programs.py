@@ -8,9 +8,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from ..engine_text import write_float
 from ..package.curves import Record
 from ..slang.source import COLUMNS
-from .numbers import Array, NumberPicture, write_float
+from .numbers import Array, NumberPicture
 from .pictures import PackedPictures
 from .translation import FxProgram, FxUniform
 

@@ -10,6 +10,7 @@ import re
 
 from msgspec import Struct
 
+from ..package.blocks import Place, lay_out_block
 from ..slang.compiler import translate_by_slang
 from ..slang.source import COLUMNS, write_slang
 
@@ -21,9 +22,8 @@ class ShaderInterface(Struct, frozen=True):
     """The binding of the block of numbers."""
     size: int
     """Bytes of the block."""
-    uniforms: dict[str, tuple[int, str, int]]
-    """Of each uniform: the byte of the block where it begins, the kind of its numbers (float, int, uint), and for an
-    array or a matrix how many of them stand in each row of 16 bytes; else 0."""
+    uniforms: dict[str, Place]
+    """Where each uniform stands in the block."""
     textures: dict[str, int]
     samplers: dict[str, int]
     """Bindings of pictures and tables, and of the samplers of tables."""
@@ -37,14 +37,10 @@ class WgslProgram(Struct, frozen=True):
 
 
 _UNIFORM = re.compile(
-    r"^uniform (?P<kind>float|int|uint|bool|[iub]?vec)(?P<size>[234])?(?:\[(?P<inner>\d+)\])? (?P<name>\w+)"
+    r"^uniform (?P<type>float|int|uint|bool|[iub]?vec[234])(?:\[(?P<inner>\d+)\])? (?P<name>\w+)"
     r"(?:\[(?P<outer>\d+)\])?;",
     re.MULTILINE,
 )
-_KINDS = {"vec": "float", "float": "float", "ivec": "int", "int": "int", "bool": "int", "bvec": "int"} | {
-    "uvec": "uint",
-    "uint": "uint",
-}
 _DECLARED = re.compile(r"^layout\(location = (?P<place>\d+)\) (?:flat )?(?:in|out) \w+ (?P<name>\w+);", re.MULTILINE)
 _LOCATION = re.compile(r"@location\(\d+\) (?P<name>\w+)_0 :")
 _BINDING = re.compile(r"@binding\((\d+)\) @group\(\d\) var(?:<uniform>)? (\w+)_0\b")
@@ -72,20 +68,12 @@ def _restore_places(wgsl: str, slang: str) -> str:
     return _LOCATION.sub(lambda match: f"@location({places[match['name']]}) {match['name']}_0 :", wgsl)
 
 
-def _lay_out(text: str) -> tuple[dict[str, tuple[int, str, int]], int]:
-    """Where uniforms begin by the rules std140 (GLSL 4.60, section 7.6.2.2), and the bytes of all."""
-    places: dict[str, tuple[int, str, int]] = {}
-    end = 0
-    for match in _UNIFORM.finditer(text):
-        size = int(match["size"] or 1)
-        rows = int(match["inner"] or match["outer"] or 0)
-        align = 16 if rows or size > 2 else 4 * size
-        start = -(-end // align) * align
-        name, kind = match["name"], _KINDS[match["kind"]]
-        places[name.removesuffix(COLUMNS)] = start, kind, _count_in_row(name, size) if rows else 0
-        end = start + (16 * rows if rows else 4 * size)
-    return places, -(-end // 16) * 16
-
-
-def _count_in_row(name: str, size: int) -> int:
-    return 3 if name.endswith(COLUMNS) else size
+def _lay_out(text: str) -> tuple[dict[str, Place], int]:
+    """Where uniforms stand in the block, and its bytes. Slang reads a matrix as a list of columns of three numbers."""
+    matches = [*_UNIFORM.finditer(text)]
+    uniforms = [(match["type"], match["name"], int(match["inner"] or match["outer"] or 0)) for match in matches]
+    places, size = lay_out_block(uniforms)
+    whole: dict[str, Place] = {}
+    for name, (start, kind, width) in places.items():
+        whole[name.removesuffix(COLUMNS)] = start, kind, 3 if name.endswith(COLUMNS) else width
+    return whole, size
