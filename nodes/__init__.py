@@ -9,9 +9,25 @@ from pathlib import Path
 from . import _declare
 from ._declare import *  # noqa: F403  (the vocabulary: `_declare.__all__` names it)
 from ._declare import Node
-from ._plugins import NodeImportError, Plugin, import_node, list_files, plugins, refuse_double_ids
+from ._plugins import (
+    NodeImportError,
+    Plugin,
+    find_fault_place,
+    import_node,
+    list_files,
+    plugins,
+    refuse_double_ids,
+)
 
-__all__ = ["NodeImportError", "Plugin", "built_in_nodes", "catalogue", "plugins", "reload_catalogue"]
+__all__ = [
+    "NodeImportError",
+    "Plugin",
+    "built_in_nodes",
+    "catalogue",
+    "find_fault_place",
+    "plugins",
+    "reload_catalogue",
+]
 __all__ += _declare.__all__
 
 

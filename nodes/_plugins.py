@@ -25,6 +25,7 @@ from functools import cache
 from importlib.machinery import PathFinder
 from importlib.util import find_spec
 from pathlib import Path
+from traceback import walk_tb
 from types import MappingProxyType, ModuleType
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -151,6 +152,13 @@ def _locate_fault(fault: BaseException, folder: Path, label: str) -> str:
         if path.is_relative_to(folder) and not is_declaration:
             return f"{label}/{path.relative_to(folder).as_posix()}, line {line}"
     return ""
+
+
+def find_fault_place(fault: BaseException, node: type[Node]) -> str:
+    """The file and the line of a node at which its code failed, the last one that ran; "" if none of it ran."""
+    file = getattr(sys.modules.get(node.__module__), "__file__", None)
+    lines = [line for frame, line in walk_tb(fault.__traceback__) if frame.f_code.co_filename == file]
+    return f"{node.__module__.removeprefix('halation.').replace('.', '/')}.py, line {lines[-1]}" if lines else ""
 
 
 def _load(point: EntryPoint) -> Plugin:

@@ -79,10 +79,12 @@ def _check_and_print(checker: GraphChecker, graphs: Sequence[Path], quiet: bool)
     from ..lint.files import find_graphs
 
     reports: list[CheckReport] = []
+    is_named = False
     for path in find_graphs(graphs, checker.sandbox):
         text = read_standard_input() if str(path) == "-" else None
         report = checker.check_file(path) if text is None else checker.check_text(text, "-", "")
         reports.append(report)
+        is_named = path in graphs
         for finding in () if quiet else report.findings:
             problem = finding.problem
             sentence, *excerpt = problem.sentence.split("\n")  # an excerpt shows where in an expression the fault is
@@ -91,15 +93,17 @@ def _check_and_print(checker: GraphChecker, graphs: Sequence[Path], quiet: bool)
             print(f"{place}: {problem.severity}: {sentence} [{problem.rule.name}]", *excerpt, sep="\n")
         if report.omitted and not quiet:
             print(f"{path}: and {report.omitted} more")
-        if not quiet and not report.findings and path in graphs:
+        if not quiet and not report.findings and is_named:
             print(f"{path}: ok")
     if not reports:
         print_note("no graphs were found")
-    elif len(reports) > 1 and not quiet:
+    elif (len(reports) > 1 or not is_named) and not quiet:
         severities = [finding.problem.severity for report in reports for finding in report.findings]
         counts = [write_count(severities.count(word), word) for word in ("error", "warning")]
         omitted = sum(report.omitted for report in reports)
-        print_note(f"{len(reports)} graphs: {', '.join(counts)}{f', and {omitted} more' if omitted else ''}")
+        print_note(
+            f"{write_count(len(reports), 'graph')}: {', '.join(counts)}{f', and {omitted} more' if omitted else ''}"
+        )
     return reports
 
 

@@ -1,4 +1,4 @@
-"""`halation info`: what a picture file holds, and what each of its layers is."""
+"""`halation info`: what a picture file holds, and what each of its layers is; what a graph takes and gives."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..resources.sandbox import Sandbox
-from .options import AsJson
+from .graph_facts import find_graph_facts, format_graph_facts
+from .options import AsJson, expand_preset
 from .outcome import print_json
 
 if TYPE_CHECKING:
@@ -23,7 +24,12 @@ if TYPE_CHECKING:
 
 
 def info(
-    file: Annotated[Path, typer.Argument(help="A picture, a sequence such as shot.####.exr, or the folder of one.")],
+    file: Annotated[
+        Path,
+        typer.Argument(
+            help="A picture, a sequence such as shot.####.exr, the folder of one, a graph, or the name of a preset.",
+        ),
+    ],
     before: Annotated[
         Path | None,
         typer.Option(
@@ -34,10 +40,15 @@ def info(
     *,
     sandbox: Sandbox,
 ) -> int:
-    """Show layers, metadata and camera of a picture.
+    """Show layers, metadata and camera of a picture; inputs, controls and outputs of a graph.
 
     For a render it also shows what each layer is (color, depth, normal, ...) and the conventions of its data.
     """
+    graph = expand_preset(str(file))
+    if graph.suffix.lower() == ".json":
+        facts = find_graph_facts(graph, sandbox)
+        print_json(facts) if as_json else print(format_graph_facts({**facts, "graph": str(file)}))
+        return 0
     from ..media.sequences import check_has_files, find_sequence
     from ..render_layers.analysis import analyze_render
     from ..render_layers.report import format_report

@@ -31,8 +31,10 @@ def check_nodes(name: str, as_json: bool, sandbox: Sandbox) -> int:
             faults[id] += () if faults[id] else find_overlap_faults(renderer, node)
     finally:
         renderer.close()
+    said = {sentence for sentences in faults.values() for sentence in sentences}
     for shader, sentences in _find_file_faults(chosen, classes):
-        faults |= {shader: sentences} if sentences else {}
+        new = [sentence for sentence in sentences if sentence not in said]
+        faults |= {shader: new} if new else {}
     if as_json:
         print_json({"faults": faults})
     else:

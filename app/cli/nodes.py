@@ -101,7 +101,7 @@ def _find_nodes(word: str, classes: Mapping[str, type[Node]]) -> dict[str, type[
 
     Raises UsageError if there are none.
     """
-    from ..custom_nodes.plugins import find_refused_plugin
+    from ..custom_nodes.plugins import find_preset, find_refused_plugin
     from ..errors import UsageError
     from ..graph import did_you_mean
 
@@ -116,6 +116,8 @@ def _find_nodes(word: str, classes: Mapping[str, type[Node]]) -> dict[str, type[
         return matches
     if plugin := find_refused_plugin(word):
         raise UsageError(f"there is no node '{word}': the plug-in {plugin} cannot be loaded: {plugin.fault}")
+    if find_preset(word):
+        raise UsageError(f"'{word}' is a preset: halation info {word} says what it takes and what can be set in it")
     menus = {node.category for node in classes.values()}
     # Only packages have a hyphen, and no node is meant by the name of one that is not installed.
     hint = "" if "-" in word else did_you_mean(word, [*classes, *menus])

@@ -23,6 +23,7 @@ from pathlib import Path
 from typing import Any, cast, get_args
 
 import msgspec
+from halation import presets
 from halation.nodes import ColorSettings, LengthUnits, Node, Plain, Value, catalogue, length_unit_fault
 from msgspec import Struct, field
 
@@ -387,8 +388,10 @@ class _BodyReader(Struct):
             raise DocumentError(self.file, at, f"the group file '{inner}' {reason}")
         real = resolve_file(inner)
         if real is None:
+            is_preset = any(preset.stem == path for preset in presets.paths())
             near = did_you_mean(inner.name, list_graph_files(inner.parent))
-            fault = f"the group file '{inner}' does not exist{near}"
+            hint = "; it is a preset: halation demo --copy FOLDER writes the files of presets" if is_preset else near
+            fault = f"the group file '{inner}' does not exist{hint}"
             raise DocumentError(self.file, at, fault, rule="missing-group")
         if real in self.outer:
             loop = " -> ".join(file.name for file in (*self.outer[self.outer.index(real) :], real))

@@ -13,7 +13,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from halation.nodes import Kind, Node, Pointwise, Source, Trait, Value, look_at
+from halation.nodes import Kind, Node, Pointwise, Source, Trait, Value, find_fault_place, look_at
 
 from ..compiler import load_library
 from ..errors import HalationError, ShaderError
@@ -286,3 +286,7 @@ def find_render_faults(renderer: Renderer, node: type[Node], table: str = "") ->
             yield from trial(renderer, node, table)
     except HalationError as fault:
         yield str(fault).removeprefix("node 'node': ")
+    except Exception as fault:
+        if not (place := find_fault_place(fault, node)):
+            raise
+        yield f"{place}: {type(fault).__name__}: {fault}"

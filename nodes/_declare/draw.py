@@ -160,7 +160,7 @@ class Draw(Protocol):
 
         The function reads inputs, and keyword arguments that are pictures, by functions named after them:
         `image_at(ivec2)`, `image_near(vec2)` and `image_size`. The other keyword arguments are the parameters of the
-        function, in order.
+        function, in order: so these cannot be called `size`, `edge`, `result` or `overlap`.
 
         `overlap` is how many pixels around its own the function reads at most, including those that `near`
         interpolates: of all pictures, or by name. Without it the function may read all pixels, and large pictures

@@ -12,6 +12,7 @@ from types import SimpleNamespace
 from typing import Annotated, Any, ClassVar, Self, dataclass_transform, get_type_hints
 
 from .camera import CameraModel
+from .checks import check_aliases, check_names
 from .draw import Draw, Drawn
 from .lengths import WORKING_UNITS, LengthUnits, declare_in_unit, is_length, resolve_length_unit, unit_factor
 from .masking import MASK, is_maskable, list_mask_values, list_own_names, make_mask
@@ -113,6 +114,7 @@ class Node:
         cls.inputs = {name: item for name, item in body.items() if isinstance(item, Socket)}
         outputs = {name: item for name, item in body.items() if isinstance(item, OutputSocket)}
         own_names = tuple(body)
+        check_aliases(cls.aliases)
         may_have_mask = is_maskable(cls, cls.inputs, outputs, Node)
         cls.own_mask_names = list_own_names(cls, cls.inputs, outputs) if may_have_mask else ()
         cls.has_mask = may_have_mask and not cls.own_mask_names
@@ -133,6 +135,7 @@ class Node:
             for field in sorted(_fields(cls), key=lambda field: field.name not in own_names)
             if field.name != "length_units"
         }
+        check_names({*cls.inputs, *outputs, *cls.values}, vars(Node).keys() - {"length_units"})
         cls.item_values = tuple(name for name, value in cls.values.items() if value.items)
         cls.order = tuple(name for name in own_names if name in cls.inputs or name in cls.values)
 

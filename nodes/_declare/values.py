@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal, get_args, get_origin
 
 from msgspec import Struct
 
+from .checks import check_default, check_unit
 from .curves import MAX_POINTS
 from .items import ItemSet, NamedItem, Scalar
 from .rows import SPLINE_ROWS, STROKE_ROWS
@@ -316,6 +317,7 @@ def read_value(name: str, hint: Any, default: Any) -> Value:
     """Turn `Annotated[type, Slider(...), ...] = default` into a Value."""
     base, notes = (hint.__origin__, hint.__metadata__) if get_origin(hint) is Annotated else (hint, ())
     facts: dict[str, Any] = {"name": name, "default": default}
+    check_default(name, base, default)
     if base in (float, int, bool):
         facts["type"] = base.__name__
     elif get_origin(base) is Literal:
@@ -330,6 +332,7 @@ def read_value(name: str, hint: Any, default: Any) -> Value:
         raise TypeError(f"value '{name}': a value cannot have the type {hint!r}")
     for note in notes:
         if isinstance(note, Slider):
+            check_unit(name, note.unit, Unit)
             facts |= {key: getattr(note, key) for key in ("low", "high", "minimum", "maximum", "unit")}
             facts["doc"] = note.doc or facts.get("doc", "")
         elif isinstance(note, Doc):

@@ -37,6 +37,14 @@ def test_a_tutorial(page: str, plate: str, tmp_path: Path) -> None:
         (tmp_path / plate).parent.mkdir(exist_ok=True)
         shutil.copy(ROOT / "presets" / "samples" / "neon.exr", tmp_path / plate)
     follow_page(f"tutorial-{page}.md", tmp_path)
+    if page == "pipeline":
+        text = (ROOT / "docs" / "tutorial-pipeline.md").read_text(encoding="utf-8")
+        ((before, after),) = re.findall(r"`intensity` from ([\d.]+) to ([\d.]+), the build fails", text)
+        look = tmp_path / "looks" / "warm.json"
+        graph = look.read_text("utf-8")
+        assert f'"intensity": {before}' in graph
+        look.write_text(graph.replace(f'"intensity": {before}', f'"intensity": {after}'), encoding="utf-8")
+        assert halation(["halation", "test"], tmp_path).returncode == 1
 
 
 def test_each_job_of_the_page_how_to(tmp_path: Path) -> None:

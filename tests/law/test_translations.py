@@ -140,12 +140,25 @@ def forms(text) -> tuple[str, ...]:
     return (text,) if isinstance(text, str) else tuple(text or ())
 
 
+def is_translated(message: Translation) -> bool:
+    return bool(forms(message.string)) and all(forms(message.string))
+
+
 @pytest.mark.parametrize("code", list_languages())
-def test_a_language_has_all_texts(code: str) -> None:
+def test_a_language_has_all_texts(code: str, is_nightly: bool) -> None:
+    """But for those of nodes by day: who adds a node need not speak German. The editor shows them in English."""
     messages = list_translations(code)
     assert len(messages) > 1000
-    empty = [message.id for message in messages if not forms(message.string) or not all(forms(message.string))]
-    assert not empty, f"{len(empty)} texts of {code}.po have no translation: {empty[:20]}"
+    empty = [
+        message.id
+        for message in messages
+        if not is_translated(message)
+        and (is_nightly or not all(file.startswith("nodes/") for file, _ in message.locations))
+    ]
+    assert not empty, (
+        f"{len(empty)} texts of app/language/catalogue/{code}.po have no translation: write them there, then "
+        f"./dev renew: {empty[:20]}"
+    )
     assert not [message.id for message in messages if message.fuzzy]
 
 
@@ -153,7 +166,7 @@ def test_a_language_has_all_texts(code: str) -> None:
 def test_a_translation_has_the_places_of_its_text(code: str) -> None:
     wrong = [
         (original, translated)
-        for message in list_translations(code)
+        for message in filter(is_translated, list_translations(code))
         for original, translated in zip(forms(message.id), forms(message.string), strict=True)
         if sorted(SAME_PLACES.findall(original)) != sorted(SAME_PLACES.findall(translated))
         and not (len(forms(message.id)) > 1 and set(SAME_PLACES.findall(translated)) <= {"{count}"})
@@ -165,7 +178,7 @@ def test_a_translation_has_the_places_of_its_text(code: str) -> None:
 def test_a_translation_begins_and_ends_as_its_text(code: str) -> None:
     """With the same spaces, line breaks and marks at the end: texts are put together."""
     wrong = []
-    for message in list_translations(code):
+    for message in filter(is_translated, list_translations(code)):
         for original, translated in zip(forms(message.id), forms(message.string), strict=True):
             ends = [re.sub(r"\S(.*\S)?", "|", text, flags=re.S) for text in (original, translated)]
             marks = [text.rstrip()[-1:] in ".!?:" for text in (original, translated)]

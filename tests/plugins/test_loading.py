@@ -12,7 +12,7 @@ import pytest
 from halation import document
 from halation.cli.specimen import plan_node
 from halation.compiler import load_library
-from halation.errors import ShaderError
+from halation.errors import GraphError, ShaderError
 from halation.graph import Graph, Port, Unknown, problems
 from halation.nodes import catalogue, plugins
 from halation.resources.sandbox import UNRESTRICTED
@@ -120,6 +120,7 @@ BROKEN = {
         FADE.replace('factor: Annotated[float, Slider(0.0, 1.0, unit="ratio")] = 0.5', "factor: complex = 0.5"),
         "nodes/tone/fade.py, line ",
     ),
+    "a unit": ("nodes/tone/fade.py", FADE.replace("ratio", "pixels"), "nodes/tone/fade.py, line "),
     "another name": ("nodes/tone/fade.py", NODE.format(name="Gone"), "nodes/tone/fade.py: TypeError: the class Gone"),
 }
 
@@ -134,6 +135,62 @@ def test_the_file_and_the_line_at_fault_are_named(site: Site, case: str) -> None
     importlib.invalidate_caches()
     forget()
     assert faults()["acme-tone"].startswith(f"acme_tone/{sentence}")
+
+
+MISTAKES = {
+    "a unit": ('"ratio"', '"pixels"', "value 'factor': there is no unit 'pixels'; did you mean 'px'? They are px, "),
+    "aliases": ("    image", '    aliases = ("dark")\n    image', "write ('dark',)"),
+    "upper case": ("    image", '    aliases = ("Dark",)\n    image', "write a tuple of names in lower case"),
+    "a name": ("factor", "version", "'version' is a name that every node uses"),
+    "no default": (" = 0.5", "", "value 'factor': it has no default"),
+    "a default": ("= 0.5", '= "x"', "value 'factor': its default 'x' is no float"),
+}
+
+
+@pytest.mark.parametrize("case", MISTAKES)
+def test_a_declaration_that_means_something_else_is_refused(site: Site, case: str) -> None:
+    old, new, sentence = MISTAKES[case]
+    code = site.install("acme-tone", "1.0")
+    (code / "nodes" / "tone" / "dim.py").write_text(NODE.format(name="Dim").replace(old, new))
+    importlib.invalidate_caches()
+    forget()
+    assert sentence in faults()["acme-tone"], faults()
+
+
+PASSES = """
+from typing import Annotated
+from halation.nodes import Draw, Drawn, Filter, Image, Slider
+
+class Dim(Filter):
+    \"\"\"Darken.\"\"\"
+
+    image = Image()
+    size: Annotated[float, Slider(0.0, 1.0, unit="ratio")] = 0.5
+
+    def passes(self, draw: Draw) -> Drawn:
+        return draw("acme_tone_dim", self.image, CALL)
+"""
+
+
+@pytest.mark.parametrize(
+    ("call", "sentence"),
+    [
+        ("size=self.size", "TypeError: 'size' is an option of the draw itself, a width and a height"),
+        ("edge=self.size", "TypeError: 'edge' is an option of the draw itself, an edge mode"),
+        ("amount=self.siez", "AttributeError: 'Dim' object has no attribute 'siez'"),
+    ],
+)
+def test_code_that_fails_while_it_draws_is_named_with_its_line(site: Site, call: str, sentence: str) -> None:
+    code = site.install("acme-tone", "1.0")
+    (code / "nodes" / "tone" / "dim.py").write_text(PASSES.replace("CALL", call))
+    (code / "shaders" / "tone").mkdir(parents=True)
+    (code / "shaders" / "tone" / "dim.glsl").write_text("vec4 acme_tone_dim(float amount) { return image_at(pixel); }")
+    importlib.invalidate_caches()
+    forget()
+    with pytest.raises(GraphError) as fault:
+        plan_node(catalogue()["acme_tone.dim"], (8, 8))
+    place = "its plug-in acme-tone==1.0 fails at acme_tone/nodes/tone/dim.py, line 12: "
+    assert f"{place}{sentence}" in str(fault.value)
 
 
 def test_an_id_in_two_menus_is_refused(site: Site) -> None:

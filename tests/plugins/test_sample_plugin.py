@@ -195,6 +195,15 @@ FAULTY = {
         "vec4 acme_glow_soft_glow(float amount) { return image_at(pixel - ivec2(2, 0)); }\n",
         "the output 'out' reads farther than an `overlap` in passes() says",
     ),
+    "code that fails": (
+        CLASS.replace("Pointwise", "Draw, Drawn, Filter").replace("SoftGlow(Draw, Drawn, Filter)", "SoftGlow(Filter)")
+        + """
+    def passes(self, draw: Draw) -> Drawn:
+        return draw("acme_glow_soft_glow", self.image, overlap=0, amount=self.amuont)
+""",
+        "vec4 acme_glow_soft_glow(float amount) { return image_at(pixel) * amount; }\n",
+        "acme_glow/nodes/glow/soft_glow.py, line 13: AttributeError: 'SoftGlow' object has no attribute 'amuont'",
+    ),
     "a name of GLSL": (
         CLASS,
         "float acme_glow_sum(float half) { return half; }\n" + SHADER.replace("BODY", "image"),

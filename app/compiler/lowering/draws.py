@@ -68,6 +68,7 @@ from ..ir import (
 from ..library import Library
 from . import constants, formulas, fourier, gaussian, padding, transforms
 from .blurs import BlurBuilder
+from .node_code import check_options
 from .node_inputs import DrawnPicture, NodeInputs, NodeResources
 from .rasters import add_raster
 from .tables import make_table
@@ -138,6 +139,7 @@ class Recorder:
         overlap: Overlap | Mapping[str, Overlap] | None = None,
         **arguments: Argument,
     ) -> Drawn:
+        check_options(size, edge, result, overlap)
         light = self._library.is_light(self._find_file(function), function, self._owner)
         shapes = (self._make_shape(result, size or self.size),)
         op = self._make_gather(function, {item.name: item for item in inputs} | arguments, shapes, edge, overlap, light)

@@ -32,6 +32,7 @@ from . import constants, masks
 from .context import LoweringContext, PointwiseForm, find_settings
 from .draws import Recorder
 from .expand import find_stand_in
+from .node_code import run_passes
 from .node_inputs import DrawnPicture, NodeInputs, find_cameras, takes_field
 from .pixel_shapes import follow_pixel_aspect
 from .steps import LoweringStep, field_port
@@ -335,7 +336,7 @@ class NodeLowering:
             self._find_memories(path, step) if remembers else {},
             context.graph.settings,
         )
-        pictures = node.passes(recorder)
+        pictures = run_passes(node, recorder, path)
         step.memories = {Port(path, name): ref for name, ref in recorder.remembered.items()}
         step.reads_frame, step.reads_other_times = recorder.reads_frame, recorder.reads_other_times
         results = pictures if isinstance(pictures, Mapping) else {next(iter(node.outputs)): pictures}

@@ -1,0 +1,40 @@
+"""Runs the code of a node, and says whose fault it is if that fails."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from halation.nodes import Draw, Filter, Reach, Socket, find_fault_place
+
+from ...errors import GraphError, HalationError
+
+
+def run_passes(node: Filter, recorder: Draw, path: str) -> Any:
+    """What a node draws. Raises GraphError where the code of a plug-in fails: users cannot tell it from ours."""
+    try:
+        return node.passes(recorder)
+    except HalationError:
+        raise
+    except Exception as fault:
+        place = find_fault_place(fault, type(node))
+        if not node.required_package or not place:
+            raise
+        sentence = f"its plug-in {node.required_package} fails at {place}: {type(fault).__name__}: {fault}"
+        raise GraphError(sentence, node=path) from fault
+
+
+def check_options(size: object, edge: object, result: object, overlap: object) -> None:
+    """Raise TypeError where an option of a draw is meant to be the parameter of the GLSL function of that name."""
+    options = {
+        "size": (size, tuple, "a width and a height"),
+        "edge": (edge, str, "an edge mode"),
+        "result": (result, Socket, "the type of the picture"),
+        "overlap": (overlap, int | tuple | Reach | Mapping, "how far the function reads"),
+    }
+    for name, (given, kind, meaning) in options.items():
+        if given is not None and not isinstance(given, kind):
+            raise TypeError(
+                f"'{name}' is an option of the draw itself, {meaning}: give the parameter of the GLSL function another "
+                "name"
+            )
