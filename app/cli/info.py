@@ -40,7 +40,7 @@ def info(
     *,
     sandbox: Sandbox,
 ) -> int:
-    """Show layers, metadata and camera of a picture; inputs, controls and outputs of a graph.
+    """Show the layers of a picture, or the controls of a graph.
 
     For a render it also shows what each layer is (color, depth, normal, ...) and the conventions of its data.
     """

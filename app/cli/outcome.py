@@ -103,7 +103,8 @@ def _describe(fault: BaseException) -> tuple[str, int, str]:
         context = getattr(fault, "ctx", None)
         command = context.command_path if context else "halation"
         text = str(format_message()).strip().rstrip(".")
-        return "UsageError", USAGE, f"{text[:1].lower()}{text[1:]}; see {command} --help"
+        hint = "; pictures are bound with -i NAME=FILE" if "extra argument" in text and " render" in command else ""
+        return "UsageError", USAGE, f"{text[:1].lower()}{text[1:]}{hint}; see {command} --help"
     if is_memory_scarce():  # then Python and libraries raise anything, such as errors of syntax
         sentence = f"there is not enough memory ({type(fault).__name__}): allow more (ulimit -v)"
         return "MemoryError", 1, sentence

@@ -281,3 +281,8 @@ def test_what_libraries_print_is_not_beside_the_sentence(tmp_path):
     device, *lines = ended.stderr.splitlines()
     assert "rasterizer" in device or "GL" in device
     assert len(lines) == 1 and lines[0].startswith("halation: ") and "cut.png" in lines[0]
+
+
+def test_a_picture_without_its_option_says_how_it_is_bound(cli):
+    said = cli("render", "soft_bloom", "shot.exr")
+    assert said.code == 2 and "pictures are bound with -i NAME=FILE" in said.err
