@@ -29,6 +29,7 @@ from ..cluster.versions import describe_versions, find_version_fault
 from ..errors import DeviceError, GraphError, HalationError, InputError, UsageError
 from ..graph.paths import change_paths, resolve_path
 from ..regression.cluster_cases import run_case_text
+from ..renderer.jobs.pipeline import KeptResults
 from ..renderer.jobs.source_files import FileHashes
 from ..resources.input_files import content_hash, fingerprint
 from . import parsing
@@ -93,9 +94,7 @@ class ChunkRenderer:
     def __init__(self, folder: Path, write_line: Callable[[Mapping[str, Any]], None], sandbox: Sandbox) -> None:
         self._folder, self._write_line, self._sandbox = folder, write_line, sandbox
         self._file_hashes = FileHashes(sandbox=sandbox)
-        self._topic = ""
-        self._frame_bytes = 0
-        """Bytes that a frame of the job takes on the device; 0 until its first chunk, which keeps nothing."""
+        self._topic, self._kept = "", KeptResults()
         self._renderer: Renderer | None = None
         self._last_graph: tuple[tuple[str, str], Graph] | None = None
         self._hashes: dict[str, str] = {}
@@ -114,8 +113,7 @@ class ChunkRenderer:
                 self._write_line({"refusal": fault})
                 return
             renderer = self._open_renderer(chunk.job, graph)
-            self._renew_hashes(chunk)
-            self._set_budget(renderer.runner.textures, chunk.job, graph)
+            self._renew_job(chunk, renderer.runner.textures, graph)
             if faults := self._check_files(chunk, graph, paths):
                 self._write_line({"faults": faults, "costs": {}})
                 return
@@ -131,9 +129,6 @@ class ChunkRenderer:
             self._write_line({"refusal": f"it cannot render: {fault}"})
         except HalationError as fault:
             self._write_line({"faults": _spread_fault(chunk, fault), "costs": {}})
-        finally:
-            if self._renderer is not None and not self._frame_bytes:
-                self._frame_bytes = self._renderer.runner.textures.peak
 
     def _render_stage(self, chunk: FrameChunk, stage: ChunkStage, item: JobItem) -> None:
         """Render a stage that comes before the frames."""
@@ -188,7 +183,14 @@ class ChunkRenderer:
         items = (
             (str(number), partial(self._open_entry, chunk, graph, number, paths, targets)) for number in chunk.numbers
         )
-        report = run_batch(renderer, items, report_item, resume=chunk.job.resume, hashes=self._file_hashes)
+        report = run_batch(
+            renderer,
+            items,
+            report_item,
+            resume=chunk.job.resume,
+            hashes=self._file_hashes,
+            kept=self._kept,
+        )
         costs = _describe_costs(report, renderer)
         self._write_line({"faults": faults, "costs": costs, "entries": to_builtins(outcomes)})
 
@@ -219,6 +221,7 @@ class ChunkRenderer:
             resume=chunk.job.resume,
             progress=progress,
             hashes=self._file_hashes,
+            kept=self._kept,
         )
         frames = {frame.frame for frame in report.frames}
         return frames, reports[0].fault, _describe_costs(report, renderer)
@@ -239,23 +242,13 @@ class ChunkRenderer:
             self._renderer = open_renderer(job, graph)
         return self._renderer
 
-    def _set_budget(self, textures: TexturePool, job: RenderJob, graph: Graph) -> None:
-        """Let as many bytes of results stay from chunk to chunk as a frame takes: what all share is computed once.
-
-        Measured with llvmpipe, 960x540 and four nodes: a frame of
-        chunks with 1 to 5 frames took 0.066 s of processors so, 0.106 without any, and in chunks of 20 frames 0.077,
-        0.074, and 0.085 with 512 MiB, which is new memory for each frame at first.
-        """
-        textures.budget = choose_budget(job, graph) or (0 if job.memory else self._frame_bytes)
-
-    def _renew_hashes(self, chunk: FrameChunk) -> None:
-        """Keep the hashes of files for all chunks of a job."""
+    def _renew_job(self, chunk: FrameChunk, textures: TexturePool, graph: Graph) -> None:
+        """Keep the hashes of files, and the results that all frames share, for all chunks of a job."""
+        textures.budget = choose_budget(chunk.job, graph)
         if self._topic != chunk.topic:
             self._file_hashes.close()
-            self._frame_bytes = 0
-            if self._renderer is not None:
-                textures = self._renderer.runner.textures
-                textures.peak = textures.allocated
+            self._kept.replace(None)
+            textures.peak = textures.allocated
             self._topic, self._file_hashes = chunk.topic, FileHashes(sandbox=chunk.job.sandbox)
 
     def _localize_job(self, job: RenderJob, paths: PathMap) -> RenderJob:

@@ -14,7 +14,7 @@ from .outcome import print_note, write_count
 if TYPE_CHECKING:
     from rich.progress import Progress
 
-    from ..cluster.campaign import CampaignReport
+    from ..cluster.campaign_report import CampaignReport
     from ..renderer.jobs.render_entry import RenderEntry
     from ..renderer.jobs.render_job import RenderJob
 

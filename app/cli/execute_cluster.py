@@ -22,7 +22,7 @@ from .options import report_problems
 from .outcome import print_json, print_note, write_count
 
 if TYPE_CHECKING:
-    from ..cluster.campaign import CampaignListener, CampaignReport
+    from ..cluster.campaign_report import CampaignListener, CampaignReport
     from ..cluster.chunk import FrameChunk
     from ..cluster.connection import Client
     from ..renderer.jobs.render_job import RenderJob
@@ -69,7 +69,8 @@ def _render_parts(
     client: Client, chunk: FrameChunk, mark_files: MarkFiles, options: ClusterOptions, listener: CampaignListener
 ) -> CampaignReport:
     """Have all frames or files rendered. A scheduler that goes and returns gets those that are missing."""
-    from ..cluster.campaign import CampaignReport, FrameCampaign
+    from ..cluster.campaign import FrameCampaign
+    from ..cluster.campaign_report import CampaignReport
     from ..cluster.connection import reopen_client
 
     report, address = CampaignReport(), options.address

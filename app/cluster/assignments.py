@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from msgspec import Struct
 
 from .chunk import ChunkStage
+from .workers import WorkerRoster
 
 _NEWEST = 0.1
 """How much the newest frame counts in the mean cost: about the last ten frames count, so that one slow frame does not
@@ -33,12 +35,16 @@ SUSPECTS = 3
 
 
 class Assignment(Struct, frozen=True):
-    """Frames that one worker is to render. `tried` are the workers that failed with them, in `attempts` tries."""
+    """Frames that one worker is to render. `tried` are the workers that failed with them, in `attempts` tries.
+
+    `fault` is the last error of these, where another worker is needed.
+    """
 
     frames: tuple[int, ...]
     attempts: int = 0
     tried: frozenset[str] = frozenset()
     stage: ChunkStage | None = None
+    fault: Mapping[str, Any] | None = None
 
 
 def count_chunk(cost: float) -> int:
@@ -118,3 +124,30 @@ class AssignmentQueue:
         for assignment in split_suspects(frames, before, worker):
             self.put_back(assignment)
         return ()
+
+
+class WaitingAssignments:
+    """Frames that wait for another one of the `workers` than those that could not render them."""
+
+    def __init__(self, workers: WorkerRoster) -> None:
+        self._workers = workers
+        self._assignments: list[Assignment] = []
+
+    def __len__(self) -> int:
+        return len(self._assignments)
+
+    def add(self, assignment: Assignment) -> None:
+        """Have frames wait."""
+        self._assignments.append(assignment)
+
+    def take_ready(self) -> list[Assignment]:
+        """Those that another worker can try now; they wait no more."""
+        return self._take([item for item in self._assignments if self._workers.has_others(item.tried)])
+
+    def take_hopeless(self) -> list[Assignment]:
+        """Those for which no other worker is expected any more; they wait no more."""
+        return self._take([item for item in self._assignments if not self._workers.expects_others(item.tried)])
+
+    def _take(self, taken: list[Assignment]) -> list[Assignment]:
+        self._assignments = [item for item in self._assignments if item not in taken]
+        return taken

@@ -8,20 +8,20 @@ import time
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from queue import Empty, SimpleQueue
-from typing import TYPE_CHECKING, Any, Protocol, cast
+from typing import TYPE_CHECKING, Any, cast
 from uuid import uuid4
 
-from msgspec import Struct, field
 from msgspec.structs import replace
 
 from ..errors import RenderError, rebuild_fault
 from ..renderer.jobs.shared_results import remove_shared_folder
 from ..resources.typed_data import convert_data
-from .assignments import MAX_ATTEMPTS, Assignment, AssignmentQueue
+from .assignments import MAX_ATTEMPTS, Assignment, AssignmentQueue, WaitingAssignments
+from .campaign_report import CampaignListener, CampaignReport
 from .chunk import ChunkReport, EntryOutcome, FileMark, FrameChunk, StageReport
 from .staged_assignments import StagedAssignments
 from .worker_task import read_version, remove_results, render_chunk
-from .workers import WorkerRoster
+from .workers import WorkerRoster, is_here
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -40,39 +40,6 @@ _LOST_SECONDS = 3.0
 
 _POINTLESS = frozenset({"UsageError", "GraphError", "DocumentError"})
 """Errors that every worker has alike."""
-
-
-class CampaignListener(Protocol):
-    """Is told how far the frames are."""
-
-    def report_progress(self, report: CampaignReport, workers: int) -> None:
-        """What has come of the frames so far; so many workers render."""
-        ...
-
-    def report_note(self, sentence: str) -> None:
-        """Something that the user should know."""
-        ...
-
-
-class CampaignReport(Struct):
-    """What came of the frames: seconds of each that is finished, and why each other one cannot be rendered.
-
-    Where a job has many files, their numbers stand for frames, and `entries` say more about them.
-    """
-
-    seconds: dict[int, float] = field(default_factory=dict[int, float])
-    kept: set[int] = field(default_factory=set[int])
-    faults: dict[int, Mapping[str, Any]] = field(default_factory=dict[int, Mapping[str, Any]])
-    costs: list[Mapping[str, Any]] = field(default_factory=list[Mapping[str, Any]])
-    workers: set[str] = field(default_factory=set[str])
-    chunks: int = 0
-    stages: Mapping[str, int] = field(default_factory=dict[str, int])
-    """How many frames were rendered by each stage that comes before the frames."""
-    entries: dict[int, EntryOutcome] = field(default_factory=dict[int, EntryOutcome])
-
-    def list_missing(self, parts: Iterable[int]) -> tuple[int, ...]:
-        """Those of these frames or files of which nothing is known yet."""
-        return tuple(part for part in parts if part not in self.seconds and part not in self.faults)
 
 
 class FrameCampaign:
@@ -103,6 +70,7 @@ class FrameCampaign:
         self._sent: dict[str, tuple[Future[str], Assignment, list[str] | None]] = {}
         self._looked_at = self._heard_at = 0.0
         self._is_waiting = False
+        self._waiting = WaitingAssignments(self._workers)
         self.report = report or CampaignReport()
         self.has_lost_scheduler = False
 
@@ -114,7 +82,7 @@ class FrameCampaign:
         """
         self._client.subscribe_topic(self._name, lambda event: self._inbox.put(event[1]))
         try:
-            while (len(self._frames) or self._sent) and not self._is_cancelled():
+            while (len(self._frames) or self._sent or self._waiting) and not self._is_cancelled():
                 self._look_at_workers()
                 self._send_chunks()
                 self._receive()
@@ -134,7 +102,16 @@ class FrameCampaign:
             assignment = self._frames.take(slots)
             if assignment is None:
                 return
-            self._send(assignment)
+            if assignment.fault is None or self._workers.has_others(assignment.tried):
+                self._send(assignment)
+            else:
+                self._hold(assignment)
+
+    def _hold(self, assignment: Assignment) -> None:
+        """Have frames wait for another worker than those that could not render them."""
+        if not self._waiting and assignment.fault is not None:
+            self._listener.report_note(f"{assignment.fault['message']}: frames wait for another worker")
+        self._waiting.add(assignment)
 
     def _send(self, assignment: Assignment) -> None:
         """Hand a chunk to Dask."""
@@ -267,39 +244,50 @@ class FrameCampaign:
         frame, facts = next(iter(report.faults.items()))
         if facts["kind"] in _POINTLESS:
             raise rebuild_fault(facts)
-        has_others = bool(set(self._workers.usable) - assignment.tried - {report.worker})
-        if not (has_others and frames.repeat_stage(assignment, frame, report.worker)):
-            self._note_faults(dict.fromkeys(frames.give_up_stage(assignment, frame), facts))
+        self._try_elsewhere(frames.take_rest(assignment, frame), facts, report.worker)
 
     def _judge_fault(self, frame: int, report: ChunkReport, assignment: Assignment) -> None:
         """Try a frame on another worker that cannot be rendered on one, or give it up."""
-        facts = report.faults.get(frame)
-        tried = assignment.tried | {report.worker}
+        facts, alone = report.faults.get(frame), replace(assignment, frames=(frame,))
         if facts is None:
-            self._frames.put_back(replace(assignment, frames=(frame,)))
+            self._frames.put_back(alone)
         elif facts["kind"] in _POINTLESS and self._chunk.numbers:
             self._note_faults({frame: facts})
         elif facts["kind"] in _POINTLESS:
             raise rebuild_fault(facts)
-        elif assignment.attempts + 1 < MAX_ATTEMPTS and set(self._workers.usable) - tried:
-            self._frames.put_back(replace(assignment, frames=(frame,), attempts=assignment.attempts + 1, tried=tried))
         else:
-            self._note_faults({frame: facts})
+            self._try_elsewhere(alone, facts, report.worker)
 
     def _judge_chain(self, missing: list[int], report: ChunkReport, assignment: Assignment) -> None:
         """Try the rest of a chain on another worker, or give it up: none of it can be rendered without the first."""
-        facts, tried = report.faults.get(missing[0]), assignment.tried | {report.worker}
+        facts, rest = report.faults.get(missing[0]), replace(assignment, frames=tuple(missing))
         if facts is not None and facts["kind"] in _POINTLESS:
             raise rebuild_fault(facts)
         if facts is None:
-            self._frames.put_back(replace(assignment, frames=tuple(missing)))
-        elif assignment.attempts + 1 < MAX_ATTEMPTS and set(self._workers.usable) - tried:
-            rest = replace(assignment, frames=tuple(missing), attempts=assignment.attempts + 1, tried=tried)
             self._frames.put_back(rest)
         else:
-            at_fault = int(facts.get("frame", missing[0]))
+            self._try_elsewhere(rest, facts, report.worker)
+
+    def _try_elsewhere(self, assignment: Assignment, facts: Mapping[str, Any], worker: str) -> None:
+        """Try frames on another worker that one cannot render, or give them up."""
+        attempts, tried = assignment.attempts + 1, assignment.tried | {worker}
+        again = replace(assignment, attempts=attempts, tried=tried, fault=facts)
+        if attempts < MAX_ATTEMPTS and (self._workers.has_others(tried) or self._workers.expects_others(tried)):
+            self._frames.put_back(again)
+        else:
+            self._give_up_fault(again, facts)
+
+    def _give_up_fault(self, assignment: Assignment, facts: Mapping[str, Any]) -> None:
+        """Render frames no more that cannot be rendered, nor those that need them."""
+        frames, queue = assignment.frames, self._frames
+        if isinstance(queue, StagedAssignments) and assignment.stage is not None and assignment.stage.kind != "frames":
+            self._note_faults(dict.fromkeys(queue.give_up_stage(assignment, frames[0]), facts))
+        elif self._chunk.is_chain:
+            at_fault = int(facts.get("frame", frames[0]))
             sentence = f"one worker renders all frames, and frame {at_fault} cannot be rendered"
-            self._note_faults({frame: {**facts, "message": sentence} for frame in missing} | {at_fault: facts})
+            self._note_faults({frame: {**facts, "message": sentence} for frame in frames} | {at_fault: facts})
+        else:
+            self._note_faults(dict.fromkeys(frames, facts))
 
     def _list_missing(self, report: ChunkReport, assignment: Assignment) -> list[int]:
         """The frames of a chunk that are not finished. Of a video that is all of them, until it is complete."""
@@ -364,10 +352,18 @@ class FrameCampaign:
                 with contextlib.suppress(Exception):
                     future.cancel(force=True)
                 self._frames.put_back(assignment)
+        self._look_at_waiting()
         self._explain_waiting()
 
+    def _look_at_waiting(self) -> None:
+        """Try frames that wait as soon as there is another worker, and give them up if none has come."""
+        for assignment in self._waiting.take_ready():
+            self._frames.put_back(assignment)
+        for assignment in self._waiting.take_hopeless():
+            self._give_up_fault(assignment, assignment.fault or {})
+
     def _check_new(self, addresses: list[str]) -> None:
-        if remote := [address for address in addresses if not address.startswith("inproc")]:
+        if remote := [address for address in addresses if not is_here(address)]:
             versions = self._client.run(read_version, workers=remote, on_error="return")
             for address in self._workers.check_versions(cast("Mapping[str, object]", versions)):
                 self._listener.report_note(f"worker {address}: {self._workers.refusals[address]}: it gets no frames")
@@ -387,7 +383,7 @@ class FrameCampaign:
                     "frames are sent as soon as one is there"
                 )
             self._is_waiting = True
-        else:
+        elif not (self._workers.expects_others(()) and (self._waiting or self._workers.has_changed)):
             reasons = "; ".join(f"{address}: {reason}" for address, reason in self._workers.refusals.items())
             raise RenderError(f"--cluster {self._address}: no worker can render these frames: {reasons}")
 

@@ -20,7 +20,8 @@ from msgspec.structs import replace
 from ..errors import UsageError
 from ..resources.struct_json import read_struct, write_struct
 from ..resources.typed_data import convert_data
-from .campaign import CampaignReport, FrameCampaign
+from .campaign import FrameCampaign
+from .campaign_report import CampaignReport
 from .chunk import FileMark, FrameChunk
 from .worker_task import make_cancel_check, read_version
 from .workers import WorkerRoster

@@ -121,15 +121,14 @@ class StagedAssignments:
                 self._drop(frame)
         return set()
 
-    def repeat_stage(self, assignment: Assignment, frame: int, worker: str) -> bool:
-        """Try the rest of a stage again that cannot render a frame; False if that was tried often enough."""
-        if assignment.attempts + 1 >= MAX_ATTEMPTS:
-            return False
+    def take_rest(self, assignment: Assignment, frame: int) -> Assignment:
+        """The rest of a stage, from a frame on that could not be rendered: it is put back or given up later.
+
+        Until then nobody renders the history.
+        """
         rest = tuple(other for other in assignment.frames if other >= frame)
         self._is_history_busy = self._is_history_busy or assignment.stage is None or assignment.stage.kind != "ahead"
-        tried = assignment.tried | {worker}
-        self.put_back(replace(assignment, frames=rest, attempts=assignment.attempts + 1, tried=tried))
-        return True
+        return replace(assignment, frames=rest)
 
     def give_up_stage(self, assignment: Assignment, frame: int) -> tuple[int, ...]:
         """The frames that cannot be rendered because a stage cannot.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import time
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping
 from typing import Any
@@ -11,6 +13,11 @@ from .render_process import find_machine
 
 FAILURES = 3
 """Chunks in a row that a worker may fail with before it gets no more: its disk may be full. A choice."""
+
+
+PATIENCE_SECONDS = 30.0
+"""Seconds since a worker has come or gone, in which another one may still come: a choice. Supervisors such as systemd
+start one again within a second, a container within ten or twenty."""
 
 
 class WorkerRoster:
@@ -24,11 +31,18 @@ class WorkerRoster:
         self._wants_gpu = wants_gpu
         self._facts: dict[str, Mapping[str, Any]] = {}
         self._failures = Counter[str]()
+        self._changed_at = -math.inf
+        """When a worker has come or gone last."""
+        self.has_changed = False
+        """True if workers have come or gone since the first ones were there."""
         self.refusals: dict[str, str] = {}
 
     def update(self, facts_by_address: Mapping[str, Mapping[str, Any]]) -> list[str]:
         """Take in what the scheduler says of its workers; those that are new."""
         new = [address for address in facts_by_address if address not in self._facts]
+        if facts_by_address.keys() != self._facts.keys():
+            self.has_changed = self._changed_at > -math.inf
+            self._changed_at = time.monotonic()
         self._facts = dict(facts_by_address)
         return new
 
@@ -73,6 +87,22 @@ class WorkerRoster:
             return None
         return [address for address in usable if address not in tried] or usable
 
+    def has_others(self, tried: Collection[str]) -> bool:
+        """True if there is a worker that has not tried a chunk yet."""
+        return any(address not in tried for address in self.usable)
+
+    def expects_others(self, tried: Collection[str]) -> bool:
+        """True if another worker may come soon, and may render what these workers could not.
+
+        At the start of a job workers come one by one, and one that has ended is started again. Of a full disk or a
+        folder that is missing, one worker says nothing about others. If two agree, it is the frame.
+        """
+        if not self._facts:  # without any worker a job waits
+            return True
+        if all(map(is_here, self._facts)) or time.monotonic() - self._changed_at > PATIENCE_SECONDS:
+            return False
+        return len(tried) < 2 or self.has_changed
+
     def check_versions(self, versions: Mapping[str, object]) -> Iterable[str]:
         """Refuse workers with another version of Halation, or without it; their addresses."""
         for address, version in versions.items():
@@ -98,3 +128,8 @@ class WorkerRoster:
     def _count_slots(self, address: str) -> int:
         threads = int(self._facts[address].get("nthreads", 1))
         return min(threads, self._count_gpus(address)) if self.needs_gpu else threads
+
+
+def is_here(address: str) -> bool:
+    """True for a worker inside of the sending process, which starts no other one."""
+    return address.startswith("inproc")

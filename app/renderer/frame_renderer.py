@@ -129,6 +129,11 @@ class FrameRenderer:
                 lease.add(plan.surfaces[number].key)
         self._carry(lease)
 
+    def take_carried(self) -> TextureLease:
+        """What stays on the device for the next frame, for somebody else to keep."""
+        carried, self._carried = self._carried, self.renderer.runner.create_lease()
+        return carried
+
     def note_history(self, frame: int, memories: Memories) -> None:
         """Take in what a frame stored that another process has rendered."""
         self._memories[self.find_history_start(frame + 1), frame] = memories

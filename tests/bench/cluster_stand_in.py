@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from halation.cluster import assignments, campaign
+from halation.cluster.campaign_report import CampaignReport
 from halation.cluster.chunk import ChunkReport, FrameChunk
 from halation.cluster.connection import start_cluster
 from halation.cluster.worker_task import FrameReporter, find_worker
@@ -28,7 +29,7 @@ GRAPH_BYTES = 3000
 class SilentListener:
     """Shows nothing."""
 
-    def report_progress(self, report: campaign.CampaignReport, workers: int) -> None:
+    def report_progress(self, report: CampaignReport, workers: int) -> None:
         """Nothing."""
 
     def report_note(self, sentence: str) -> None:

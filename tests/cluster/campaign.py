@@ -60,13 +60,6 @@ class HarmedFarm:
         for _ in range(WORKERS - len(self.farm.workers)):
             self.farm.start_worker()
 
-    def wait_for_workers(self) -> None:
-        """Wait until all are connected: one with a full disk that is alone ends the job."""
-        from distributed import Client
-
-        with Client(self.farm.address, set_as_default=False, timeout=60) as client:
-            client.wait_for_workers(WORKERS, timeout=120)
-
     def start_full_worker(self) -> None:
         """Start a worker that cannot write."""
         self.farm.start_worker(**self._full)
@@ -113,7 +106,6 @@ def try_once(folder: Path, number: int, draw: random.Random) -> tuple[str, list[
             harmed.start_full_worker()
             harms.append("full disk")
         harmed.fill()
-        harmed.wait_for_workers()
         process = render(folder, f"{name}.json", "-o", f"run{number}/f.####.exr", "--cluster", harmed.address)
         while not any(output.iterdir()) and process.poll() is None:  # a job that has not begun is refused instead
             time.sleep(0.05)

@@ -117,6 +117,18 @@ class ItemSession:
         begin = self.frame_renderer.find_history_start(frame)
         return FrameTask(self, frame, files, plan, self._sources.find_sources(plan, frame, begin))
 
+    def plan_coming(self, task: FrameTask) -> Plan | None:
+        """The plan of the frame after another one, which is not rendered here; None if it cannot be or has a history.
+
+        What both share may stay for whoever renders it.
+        """
+        if task.plan.memories or self.item.history:
+            return None
+        try:
+            return self.frame_renderer.plan_frame(task.frame + 1)
+        except HalationError:  # it is told where the frame is rendered, if it ever is
+            return None
+
     def has_files(self, frame: int) -> bool:
         """True if all files of a frame are there, whatever they hold."""
         return all(file.path.is_file() for file in self._files[frame])

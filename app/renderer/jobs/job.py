@@ -12,11 +12,11 @@ from ...graph import Graph
 from ..engine import Renderer, RenderRequest
 from .destinations import OutputSettings
 from .item_session import JobItem
-from .pipeline import FramePipeline, ItemOpener
+from .pipeline import FramePipeline, ItemOpener, KeptResults
 from .reports import FrameReport, ItemReport, JobProgress, JobReport
 from .source_files import FileHashes
 
-__all__ = ["FrameReport", "JobProgress", "JobReport", "OutputSettings", "run_batch", "run_job"]
+__all__ = ["FrameReport", "JobProgress", "JobReport", "KeptResults", "OutputSettings", "run_batch", "run_job"]
 
 
 def run_job(
@@ -51,12 +51,13 @@ def run_batch(
     progress: JobProgress | None = None,
     writers: int = 1,
     hashes: FileHashes | None = None,
+    kept: KeptResults | None = None,
 ) -> JobReport:
     """Render items, given by their names, and write them; the report of all of them together.
 
     `writers` threads write the files; a video needs a single one. Each item is reported when it is finished. An error
     ends its item, is part of the report of it, and is not raised. `hashes` are those of files that an earlier batch has
-    read.
+    read, and `kept` are its results, in place of which come those that this batch leaves for a later one.
     """
     counters, programs = renderer.runner.counters.passes, renderer.runner.programs.compiled
     item_reports: list[ItemReport] = []
@@ -66,7 +67,7 @@ def run_batch(
         report_item(report)
 
     pipeline = FramePipeline(
-        renderer, items, collect_report, resume=resume, progress=progress, writers=writers, hashes=hashes
+        renderer, items, collect_report, resume=resume, progress=progress, writers=writers, hashes=hashes, kept=kept
     )
     try:
         pipeline.run()

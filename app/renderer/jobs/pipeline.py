@@ -29,8 +29,24 @@ ItemOpener = Callable[[], JobItem]
 """Makes an item when it is its turn. May raise the errors of `app.errors`, which end this item only."""
 
 
+class KeptResults:
+    """The results that a pipeline leaves on the device for a later one: what its last frame shares with the next."""
+
+    def __init__(self) -> None:
+        self._lease: TextureLease | None = None
+
+    def replace(self, lease: TextureLease | None) -> None:
+        """Keep what this lease holds instead of what was kept; nothing for None."""
+        if self._lease is not None:
+            self._lease.close()
+        self._lease = lease
+
+
 class FramePipeline:
-    """Renders the frames of items into files; `report_item` is called when an item is finished or has failed."""
+    """Renders the frames of items into files; `report_item` is called when an item is finished or has failed.
+
+    `kept` has what an earlier pipeline has left on the device, and takes what this one leaves.
+    """
 
     def __init__(
         self,
@@ -42,7 +58,9 @@ class FramePipeline:
         progress: JobProgress | None = None,
         writers: int = 1,
         hashes: FileHashes | None = None,
+        kept: KeptResults | None = None,
     ) -> None:
+        self._kept = kept
         self._renderer, self._items, self._report_item = renderer, items, report_item
         self._resume, self._progress = resume, progress
         self._owns_hashes = hashes is None
@@ -185,7 +203,8 @@ class FramePipeline:
         self._hashes.start(task.sources)
         self._row_writers = task.session.open_row_writers(task)
         following_plan = following.plan if following else None
-        for run in task.session.frame_renderer.start_runs(task.frame, lease, following=following_plan):
+        coming_plan = task.session.plan_coming(task) if self._kept and following is None else following_plan
+        for run in task.session.frame_renderer.start_runs(task.frame, lease, following=coming_plan):
             run.receive_rows = self._row_writers.write_rows
             with run:
                 if following_plan is not None:
@@ -195,6 +214,8 @@ class FramePipeline:
                     passes += 1
                     if self._progress is not None:
                         self._progress.report_pass(task.frame, passes_done, run.total, render_pass.nodes)
+        if self._kept and following is None:
+            self._kept.replace(task.session.frame_renderer.take_carried())
         self.seconds["render"] += time.perf_counter() - started
         return passes
 
