@@ -84,13 +84,20 @@ def prepare_entries(job: RenderJob, graph: Graph, path_map: PathPairs) -> tuple[
     return replace(chunk, numbers=tuple(range(1, len(entries) + 1))), mark_files
 
 
-def _fill_chunk(job: RenderJob, graph: Graph, path_map: PathPairs, marker: FileMarker) -> FrameChunk:
-    """What the parts of a job share, of whichever kind they are."""
+def describe_share(job: RenderJob, graph: Graph) -> FrameChunk:
+    """What the parts of a job share that other processes of this machine render: the same files, the same code."""
     from ..cluster.chunk import FrameChunk
-    from ..cluster.versions import describe_versions
+
+    inputs = _make_absolute_inputs(graph, job.inputs)
+    folder = os.path.abspath(graph.folder)  # noqa: PTH100 - links stay
+    return FrameChunk(_describe_sent(replace(job, inputs=inputs), graph), folder, topic="share")
+
+
+def _describe_sent(job: RenderJob, graph: Graph) -> RenderJob:
+    """A job as it is sent: with its whole graph, and absolute paths."""
     from ..renderer.jobs.header import dump_whole_graph
 
-    sent_job = replace(
+    return replace(
         job,
         graph="-",
         document=dump_whole_graph(graph),
@@ -98,8 +105,15 @@ def _fill_chunk(job: RenderJob, graph: Graph, path_map: PathPairs, marker: FileM
         destinations=_make_absolute_files(job.destinations),
         processes=1,
     )
+
+
+def _fill_chunk(job: RenderJob, graph: Graph, path_map: PathPairs, marker: FileMarker) -> FrameChunk:
+    """What the parts of a job share, of whichever kind they are."""
+    from ..cluster.chunk import FrameChunk
+    from ..cluster.versions import describe_versions
+
     return FrameChunk(
-        sent_job,
+        _describe_sent(job, graph),
         os.path.abspath(graph.folder),  # noqa: PTH100 - links stay
         path_map,
         contents=marker.read_contents(),

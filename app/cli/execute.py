@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -56,7 +57,7 @@ def execute(job: RenderJob, progress: Literal["bar", "json"], as_json: bool) -> 
     execute_opened = execute_batch if job.entries else _execute_opened
     return run_watched(
         lambda: execute_opened(job, graph, progress, as_json, started),
-        (graph,) if job.processes == 1 else (),  # what shares the frames is watched one by one
+        (graph,) if job.processes < 2 else (),  # what shares the frames is watched one by one
         job.timeout,
         as_json,
         memory=job.memory,
@@ -152,11 +153,24 @@ def _render_here(
     renderer = open_job_renderer(job, graph, prefetcher)
     opened_at = time.perf_counter()
     request, output_settings = make_request(job, job.inputs, targets), make_output_settings(job, job.files)
+
+    def describe(report: JobReport) -> dict[str, Any]:
+        seconds = {"load": loaded_at - started, "open": opened_at - loaded_at, **report.seconds}
+        seconds["total"] = time.perf_counter() - started
+        return _report_facts(report, renderer.device.description, seconds)
+
+    run = partial(run_job, renderer, graph, request, output_settings, job.frames, resume=job.resume)
     with progress_reporter(progress, len(job.frames)) as reporter:
-        report = run_job(renderer, graph, request, output_settings, job.frames, resume=job.resume, progress=reporter)
-    seconds = {"load": loaded_at - started, "open": opened_at - loaded_at, **report.seconds}
-    seconds["total"] = time.perf_counter() - started
-    return _report_facts(report, renderer.device.description, seconds)
+        if job.processes:
+            return describe(run(progress=reporter))
+        from .sharing import FrameSharing
+
+        sharing = FrameSharing(job, graph, targets, reporter)
+        sharing.watch(renderer)
+        try:
+            return sharing.join(describe(run(progress=sharing, todo=sharing.todo)))
+        finally:
+            sharing.stop()
 
 
 def _report_facts(report: JobReport, device: str, seconds: Mapping[str, float]) -> dict[str, Any]:

@@ -175,10 +175,13 @@ def _describe_entry(report: ItemReport) -> dict[str, Any]:
 
 
 def _split_entries(job: RenderJob, is_watched: bool) -> list[RenderJob]:
-    """The jobs of the helper processes; none where this process renders."""
+    """The jobs of the helper processes; none where this process renders.
+
+    `-j auto` is one process: it decodes and encodes files on threads, so that it keeps the cores busy by itself.
+    """
     from msgspec.structs import replace
 
-    count = min(job.processes, len(job.entries))
+    count = min(max(1, job.processes), len(job.entries))
     if count < 2 and not is_watched:
         return []
     return [replace(job, entries=job.entries[start::count], processes=1, timeout=0.0) for start in range(count)]

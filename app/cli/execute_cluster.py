@@ -117,7 +117,7 @@ def _refuse_options(job: RenderJob, options: ClusterOptions) -> None:
     """Raise UsageError for options that a cluster does not serve."""
     if options.detaches and options.address.startswith("local"):
         raise UsageError(f"--detach: the workers of {options.address} end with the command: name a scheduler")
-    if job.processes > 1:
+    if job.processes != 1:
         raise UsageError("--cluster and -j: give one of them; --cluster local:4 has four workers on this machine")
     if job.codec and not job.videos:
         raise UsageError(f"--codec {job.codec}: a codec needs a video: write -o NAME.mp4, .mov, .mkv or .webm")

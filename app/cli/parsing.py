@@ -83,6 +83,15 @@ def parse_memory(text: str | None) -> int:
     return int(nbytes)
 
 
+def parse_jobs(text: str) -> int:
+    """The number of processes in `4`; 0 for `auto`. Raises UsageError."""
+    if text == "auto":
+        return 0
+    if not text.isascii() or not text.isdigit() or int(text) < 1:
+        raise UsageError(f"-j {text}: write a number of processes, such as -j 4, or -j auto")
+    return int(text)
+
+
 def parse_setting(text: str) -> Any:
     """The value of `--set`: a value, animation keys (`1@1,4@24`, `0,0@1:linear,1,.5@24`), or `=` and an expression."""
     from ..graph import Expression, Interpolation, Key, Keys

@@ -47,9 +47,12 @@ _Each = Annotated[
 ]
 _Resume = Annotated[bool, typer.Option("--resume", help="Skip frames whose files exist and are up to date.")]
 _Jobs = Annotated[
-    int,
+    str,
     typer.Option(
-        "-j", "--jobs", min=1, help="Share the frames among this many processes, if each frame is independent."
+        "-j",
+        "--jobs",
+        metavar="N|auto",
+        help="Share the frames among this many processes, if each frame is independent; auto measures how many pay.",
     ),
 ]
 _Priority = Annotated[
@@ -108,7 +111,7 @@ def render(
     frame: OneFrame = None,
     frames: Frames = None,
     resume: _Resume = False,
-    jobs: _Jobs = 1,
+    jobs: _Jobs = "1",
     cluster: Cluster = "",
     path_map: PathMaps = None,
     priority: _Priority = 0,
@@ -175,7 +178,7 @@ def render(
         dither=parsing.parse_dither(dither),
         burn_in=burn_in,
         resume=resume,
-        processes=jobs,
+        processes=parsing.parse_jobs(jobs),
         timeout=timeout,
         sandbox=sandbox,
     )

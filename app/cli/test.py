@@ -11,6 +11,7 @@ import typer
 from ..errors import UsageError
 from ..resources.render_choices import DEFAULT_TIMEOUT
 from ..resources.sandbox import Sandbox
+from . import parsing
 from .options import AsJson, Cluster
 from .outcome import print_json, print_note
 from .watchdog import PoolWatchdog, Timeout, run_session
@@ -38,7 +39,15 @@ _Update = Annotated[
     bool, typer.Option("--update", help="Approve the new pictures: write goldens that are missing or that fail.")
 ]
 _StopEarly = Annotated[bool, typer.Option("-x", "--exitfirst", help="Stop at the first failure.")]
-_Jobs = Annotated[int, typer.Option("-j", "--jobs", min=1, help="Share the cases among this many processes.")]
+_Jobs = Annotated[
+    str,
+    typer.Option(
+        "-j",
+        "--jobs",
+        metavar="N|auto",
+        help="Share the cases among this many processes; auto chooses as many as cases, cores and memory allow.",
+    ),
+]
 _Listed = Annotated[bool, typer.Option("--list", help="Print the names of the cases without rendering.")]
 _Out = Annotated[
     Path | None,
@@ -66,7 +75,7 @@ def test(
     select: _Select = "",
     update: _Update = False,
     stop_early: _StopEarly = False,
-    jobs: _Jobs = 1,
+    jobs: _Jobs = "1",
     cluster: Cluster = "",
     listed: _Listed = False,
     out: _Out = None,
@@ -88,17 +97,21 @@ def test(
     cases = select_cases(load_suites(suites or [Path()], sandbox), select)
     if listed:
         return _list_cases(cases, as_json)
-    reports = _ReportFiles(report, junit, as_json)
+    reports, processes = _ReportFiles(report, junit, as_json), parsing.parse_jobs(jobs)
+    if not processes and not cluster:
+        from ..regression.parallel import choose_processes
+
+        processes = choose_processes(len(cases))
 
     def work(supervisor: Supervisor | None = None, share: CaseSharing | None = None) -> int:
         from ..regression.case_runner import RunOptions
 
         options = RunOptions(sandbox, update, out, pictures=report is not None, deterministic=deterministic)
-        return _run_and_report(cases, options, jobs, stop_early, reports, supervisor, share)
+        return _run_and_report(cases, options, processes, stop_early, reports, supervisor, share)
 
     if cluster:
-        return _run_on_cluster(cluster, jobs, timeout, lambda share: work(None, share))
-    if jobs == 1:
+        return _run_on_cluster(cluster, processes, timeout, lambda share: work(None, share))
+    if processes == 1:
         return run_session(work, timeout, as_json)
     import tempfile
 
@@ -111,7 +124,7 @@ def _run_on_cluster(address: str, jobs: int, timeout: float, work: Callable[[Cas
     from ..cluster.connection import open_client
     from ..regression.cluster_cases import share_cases
 
-    if jobs > 1:
+    if jobs != 1:
         raise UsageError("--cluster and -j: give one of them; --cluster local:4 has four workers on this machine")
     with open_client(address) as client:
         return work(lambda cases, options: share_cases(client, address, cases, options, timeout))

@@ -88,6 +88,11 @@ class RenderProcess:
         threading.Thread(target=self._listen, name="render process", daemon=True).start()
 
     @property
+    def number(self) -> int:
+        """Its number in the system."""
+        return self._process.pid
+
+    @property
     def is_alive(self) -> bool:
         """True if it can take another chunk."""
         return self._process.poll() is None
@@ -193,8 +198,9 @@ class RenderProcess:
 
     def _listen(self) -> None:
         assert self._process.stdout is not None
-        for line in self._process.stdout:
-            self._lines.put(line)
+        with self._process.stdout as lines:
+            for line in lines:
+                self._lines.put(line)
         self._lines.put(None)
 
     def _describe_end(self) -> str:

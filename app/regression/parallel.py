@@ -18,6 +18,7 @@ from typing import Protocol
 from .. import renderer as engine
 from ..errors import RenderError
 from ..resources.heartbeat import BEACON_FILE, BEACON_TRIALS
+from ..resources.machine import available_cores, available_memory
 from ..resources.sandbox import Sandbox
 from ..version import VERSION
 from .case_runner import RunOptions, run_case
@@ -42,6 +43,19 @@ class Supervisor(Protocol):
     def check(self) -> None:
         """Raise DeviceError for code that must not go on; its process has been killed."""
         ...
+
+
+_LEAST_CASES = 8
+"""Cases of a process at least: it starts in the time that several small ones take. A choice."""
+
+_PROCESS_BYTES = 512 << 20
+"""Bytes that a process takes: about 400 MB with Mesa 22.3 beside its pictures, which are small in most suites."""
+
+
+def choose_processes(case_count: int) -> int:
+    """How many processes share so many cases where nobody says: as many as there are cores, memory and work for."""
+    by_memory = int(min(available_memory() / _PROCESS_BYTES, case_count))
+    return max(1, min(available_cores(), case_count // _LEAST_CASES, by_memory))
 
 
 def run_cases(

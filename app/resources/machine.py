@@ -8,10 +8,37 @@ import re
 import sys
 from pathlib import Path
 
+_CONTROL_GROUP = Path("/sys/fs/cgroup")
+"""Where Linux says how much a container may take (cgroup v2, kernel documentation, "Control Group v2")."""
+
 
 def available_cores() -> int:
-    """Count the processors that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    """Count the processors that this process may use: those it may run on, or whose time its container may take."""
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    quota, _, period = _read_line(_CONTROL_GROUP / "cpu.max").partition(" ")
+    if quota.isdigit() and period.isdigit() and int(period):
+        cores = min(cores, max(1, math.ceil(int(quota) / int(period))))
+    return cores
+
+
+def available_memory() -> float:
+    """Bytes that programs can still get on this machine or in this container; infinite where nobody says."""
+    try:
+        text = Path("/proc/meminfo").read_text("ascii")
+    except OSError:
+        return math.inf
+    free = re.search(r"^MemAvailable:\s*(\d+) kB", text, re.MULTILINE)
+    available = int(free[1]) * 1024.0 if free else math.inf
+    limit, used = (_read_line(_CONTROL_GROUP / f"memory.{name}") for name in ("max", "current"))
+    return min(available, float(int(limit) - int(used))) if limit.isdigit() and used.isdigit() else available
+
+
+def _read_line(path: Path) -> str:
+    """The only line of a file of the system; "" where there is none."""
+    try:
+        return path.read_text("ascii").strip()
+    except (OSError, ValueError):
+        return ""
 
 
 def has_display() -> bool:

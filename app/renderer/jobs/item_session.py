@@ -61,6 +61,8 @@ class JobItem(Struct, frozen=True):
     graph_text: str = ""
     """The text of the graph in headers, where `graph` has paths of another machine; "" for that of `graph`."""
     history: SharedHistory | None = None
+    todo: deque[int] | None = None
+    """Those of the frames that nobody has begun, where others render some of them and take them from its right end."""
 
 
 class FrameTask(Struct, frozen=True):
@@ -97,7 +99,7 @@ class ItemSession:
         self._sources = SourceFinder(renderer.pictures, item.graph, bound)
         self._video_writers = VideoWriters(item.settings, self._find_rate, renderer.sandbox)
         self._resume = resume
-        self.todo = deque(item.frames)
+        self.todo = deque(item.frames) if item.todo is None else item.todo
         self.unfinished_tasks = 0
         self.is_stopped = self.is_settled = False
         self.fault: HalationError | None = None

@@ -6,6 +6,7 @@ the same pipeline (`pipeline`).
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 
 from ...graph import Graph
@@ -28,13 +29,14 @@ def run_job(
     *,
     resume: bool = False,
     progress: JobProgress | None = None,
+    todo: deque[int] | None = None,
 ) -> JobReport:
-    """Render frames, by default that of `request`, and write them.
+    """Render frames, by default that of `request`, and write them. Others may take some of those in `todo`.
 
     Destinations are checked before anything is rendered. With `resume`, files that are up to date are kept. Raises the
     errors of `app.errors`; the files of finished frames stay, and no incomplete file and no video is left behind.
     """
-    item = JobItem("", graph, request, settings, tuple(frames or (request.frame,)))
+    item = JobItem("", graph, request, settings, tuple(frames or (request.frame,)), todo=todo)
     item_reports: list[ItemReport] = []
     report = run_batch(renderer, [("", lambda: item)], item_reports.append, resume=resume, progress=progress)
     if fault := item_reports[0].fault:

@@ -123,7 +123,11 @@ class FramePipeline:
 
         The frames before the faulty one are still finished.
         """
-        frame, started = session.todo.popleft(), time.perf_counter()
+        started = time.perf_counter()
+        try:
+            frame = session.todo.popleft()
+        except IndexError:  # another process has taken the last one just now
+            return None
         try:
             task = session.plan_task(frame)
             self.seconds["compile"] += time.perf_counter() - started

@@ -49,6 +49,7 @@ class RenderJob(PictureSettings, frozen=True, kw_only=True, omit_defaults=True, 
     """Write file, timecode and frame over every picture."""
     resume: bool = False
     processes: int = 1
+    """How many processes share the frames; 0 for as many as are fastest."""
     timeout: float = DEFAULT_TIMEOUT
     """Seconds that a pass of code in the graph may take; 0 for no limit."""
 
