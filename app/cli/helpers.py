@@ -23,6 +23,7 @@ from ..errors import HalationError, rebuild_fault
 from ..resources.atomic_write import remove_files_of
 from ..resources.heartbeat import Watchdog, name_signal
 from ..resources.interrupts import delay_interrupts
+from ..resources.machine import available_cores
 from .outcome import print_note
 from .watchdog import CHECK_INTERVAL
 
@@ -245,5 +246,5 @@ def _divide_cores(helpers: int) -> dict[str, str]:
     """Environment variables that divide the cores among the helpers; each using all of them is slower."""
     if helpers == 1:
         return {}
-    threads = str(max(1, (os.cpu_count() or 1) // helpers))
+    threads = str(max(1, available_cores() // helpers))
     return {"LP_NUM_THREADS": threads, "OPENIMAGEIO_THREADS": threads}

@@ -90,7 +90,7 @@ class FrameSharing:
         self._is_decided = self._is_stopped = False
         self._threads: list[threading.Thread] = []
         self._reports: list[Mapping[str, Any]] = []
-        self._seconds: dict[int, bool] = {}
+        self._finished: dict[int, bool] = {}
         """The frames that others have finished, and whether each was kept."""
         self._fault: HalationError | None = None
         self._renderer: Renderer | None = None
@@ -126,8 +126,8 @@ class FrameSharing:
         self._raise_fault()
         if not self._reports:
             return report
-        frames = sorted([*report["frames"], *self._seconds])
-        kept = [*report["kept"], *(frame for frame, is_kept in self._seconds.items() if is_kept)]
+        frames = sorted([*report["frames"], *self._finished])
+        kept = [*report["kept"], *(frame for frame, is_kept in self._finished.items() if is_kept)]
         seconds = report["seconds"]
         others = [{**costs, "seconds": {**dict.fromkeys(seconds, 0.0), **costs["seconds"]}} for costs in self._reports]
         total = join_costs([report, *others])
@@ -207,7 +207,7 @@ class FrameSharing:
         from ..renderer.jobs.reports import FrameReport
 
         frame, is_kept = event["frame"], bool(event["kept"])
-        self._seconds[frame] = is_kept
+        self._finished[frame] = is_kept
         written = tuple(map(Path, list_written(self._job.destinations, (frame,))))
         self._show(FrameReport(frame, written, event["passes"], is_kept))
 

@@ -107,7 +107,7 @@ def _run_shared(
     cases: Sequence[Case], options: RunOptions, jobs: int, supervisor: Supervisor | None
 ) -> Generator[CaseResult, None, None]:
     # If each process used all cores, they would only slow each other down.
-    threads = str(max(1, (os.cpu_count() or 1) // jobs))
+    threads = str(max(1, available_cores() // jobs))
     folder = supervisor.folder if supervisor else None
     pool = ProcessPoolExecutor(jobs, get_context("spawn"), _prepare_worker, (threads, folder))
     try:

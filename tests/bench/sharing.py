@@ -71,7 +71,9 @@ def main() -> None:
             for choice in CHOICES:
                 pairs = measured[task, choice]
                 facts = ", ".join(f"{seconds:.2f} ({used:.2f})" for seconds, used in pairs)
-                print(f"| {choice} | {min(pairs)[0]:.2f} | {min(used for _, used in pairs):.2f} | {facts} |", flush=True)
+                print(
+                    f"| {choice} | {min(pairs)[0]:.2f} | {min(used for _, used in pairs):.2f} | {facts} |", flush=True
+                )
 
 
 if __name__ == "__main__":
