@@ -42,7 +42,7 @@ def build_scene(graph: Graph) -> CanvasScene:
 def arrange_whole(graph: Graph) -> Graph:
     """The graph after Arrange, as the editor calls it."""
     scene = build_scene(graph)
-    return arrange(graph, None, positions(graph), scene.sizes, scene.pins)
+    return arrange(graph, None, positions(graph), scene.sizes, scene.find_pins())
 
 
 def find_rectangles(scene: CanvasScene) -> dict[ElementId, Rect]:

@@ -61,7 +61,7 @@ def write_many_things(folder: Path) -> Path:
 
 def window(ui: Ui) -> Screens:
     """All panels at once, with a node selected."""
-    ui.session.apply(ArrangeElements(ui.editor.canvas.sizes or {}, ui.editor.canvas.pins))
+    ui.session.apply(ArrangeElements(ui.editor.canvas.sizes or {}, ui.editor.canvas.find_pins()))
     ui.editor.canvas.fit()
     ui.session.select([ElementId("bloom")])
     ui.settled()

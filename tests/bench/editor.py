@@ -73,7 +73,7 @@ def measure_frame(folder: Path) -> dict[str, float]:
     times_by_panel: dict[str, list[float]] = {}
 
     def body(ui: Ui) -> None:
-        ui.session.apply(ArrangeElements(ui.editor.canvas.sizes or {}, ui.editor.canvas.pins))
+        ui.session.apply(ArrangeElements(ui.editor.canvas.sizes or {}, ui.editor.canvas.find_pins()))
         ui.editor.canvas.fit()
         ui.settled()
         panels = ui.window._panels

@@ -62,7 +62,7 @@ class Recorder:
     def arrange(self, _: str) -> None:
         """Arrange the graph and show all of it."""
         editor = self.window.editor
-        editor.session.apply(ArrangeElements(editor.canvas.sizes or {}, editor.canvas.pins))
+        editor.session.apply(ArrangeElements(editor.canvas.sizes or {}, editor.canvas.find_pins()))
         editor.canvas.fit()
 
     def select(self, name: str) -> None:

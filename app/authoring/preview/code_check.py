@@ -32,6 +32,7 @@ class CodeCheck:
         """The code that `_run` renders."""
         self._run: Run | None = None
         self._lease = renderer.runner.create_lease()
+        self._listed: tuple[Graph | None, tuple[tuple[str, CustomNode], ...]] = (None, ())
 
     def is_behind(self, work: PreviewWork) -> bool:
         """True while there is code in the graph that was not tried yet, or whose errors were not added to the work.
@@ -40,13 +41,13 @@ class CodeCheck:
         """
         return any(
             path not in work.faults and self._errors.get(type(node), node) is not None
-            for path, node in _list_code_nodes(work.request.graph, "")
+            for path, node in self._list_nodes(work.request.graph)
         )
 
     def add_faults(self, work: PreviewWork) -> bool:
         """Do a step, and add the errors that rendering did not find; True if there are new ones."""
         faults = dict[str, HalationError]()
-        nodes = {path: node for path, node in _list_code_nodes(work.request.graph, "") if path not in work.faults}
+        nodes = {path: node for path, node in self._list_nodes(work.request.graph) if path not in work.faults}
         untried = {type(node): node for node in nodes.values() if type(node) not in self._errors}
         if self._checked not in untried:
             self.clear()
@@ -64,6 +65,12 @@ class CodeCheck:
             self._run.close()
         self._lease.close()
         self._checked = self._run = None
+
+    def _list_nodes(self, graph: Graph) -> tuple[tuple[str, CustomNode], ...]:
+        """The nodes of code of a graph; asked in each frame, so they are found once."""
+        if self._listed[0] is not graph:
+            self._listed = graph, tuple(_list_code_nodes(graph, ""))
+        return self._listed[1]
 
     def _step(self, node: CustomNode) -> None:
         """Compile the code, or run one more of its passes unless that would wait."""

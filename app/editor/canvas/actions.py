@@ -318,7 +318,7 @@ GRAPH: tuple[Action[CanvasContext], ...] = (
     Action(
         "layout.arrange",
         "Arrange",
-        lambda context: context.session.apply(ArrangeElements(reserve_pictures(context), context.canvas.pins)),
+        lambda context: context.session.apply(ArrangeElements(reserve_pictures(context), context.canvas.find_pins())),
         "Graph",
         "L",
         "graph",

@@ -17,7 +17,7 @@ from ..toolkit.words import show_tip
 from .brush import DETAILS_FROM, DrawContext, TextCache, make_canvas_colors
 from .crumbs import draw_crumbs
 from .frame import CanvasFrame
-from .geometry import Point, Rect, contains, find_bounds, fit_view, make_transform, overlaps, reveal_rect
+from .geometry import Point, Rect, contains, find_bounds, fit_view, make_transform, reveal_rect
 from .gestures import Band, CutGesture, Idle, LinkGesture, MoveGesture, ResizeGesture, make_band_rect
 from .hints import explain_tool, hint_at_beginning
 from .layout import PICTURE
@@ -135,8 +135,9 @@ class Canvas:
         self._paint(brush, frame)
         self._draw_overlays(brush, frame)
         brush.draw.pop_clip_rect()
-        view.sizes, view.pins = scene.sizes, scene.pins
-        self._places.record(self._mouse.preview.scene, brush)
+        view.sizes, view.find_pins = scene.sizes, scene.find_pins
+        if not view.panning:  # everything moves: nobody can point at a place that is already another
+            self._places.record(self._mouse.preview.scene, brush)
 
     # --- before painting ---------------------------------------------------------------------------------------------
 
@@ -227,7 +228,7 @@ class Canvas:
         facts = gather_look_facts(self._context, brush.ink, mouse.gesture, hot)
         if not session.graph.nodes:
             paint_hint(brush, frame.panel, hint_at_beginning(self._context))
-        visible = [box for box in scene.boxes.values() if overlaps(box.rect, _grow(brush.visible, 32.0))]
+        visible = scene.list_boxes(_grow(brush.visible, 32.0))
         for box in visible:
             if box.sort == "frame":
                 lit = mouse.hit.key == box.key or (
@@ -278,7 +279,7 @@ class Canvas:
         linking = isinstance(mouse.gesture, LinkGesture)
         detached = mouse.gesture.detached if isinstance(mouse.gesture, LinkGesture) else None
         highlighted = {mouse.hit.port} if mouse.hit.part == "link" else {mouse.preview.insert, *mouse.preview.crossed}
-        for wire in scene.wires:
+        for wire in scene.links.list_visible(brush.visible):
             if wire.target != detached:
                 lit = wire.target in highlighted or wire.stops[0] in selection or wire.stops[-1] in selection
                 paint_wire(brush, wire, lit=lit, faded=linking)

@@ -105,6 +105,8 @@ class NodeLayout:
     hidden: int = 0
     open: bool = False
     collapsed: bool = False
+    linked: frozenset[str] = frozenset()
+    """The inputs and values that links drive."""
 
     @property
     def more(self) -> Rect | None:
@@ -191,6 +193,7 @@ def make_node_layout(id: str, item: Item, graph: Graph, facts: NodeFacts) -> Nod
         foot,
         hidden,
         is_open,
+        linked=facts.linked_ins,
     )
 
 

@@ -16,6 +16,7 @@ from .geometry import (
     SAMPLES,
     Curve,
     Point,
+    Rect,
     find_crossed,
     find_crossing,
     find_midpoint,
@@ -58,6 +59,24 @@ class LinkIndex:
         """All curves of all links as polylines."""
         shapes = [shape for wire in self.wires for shape in wire.curves]
         return sample_curves(np.array(shapes, float)) if shapes else np.zeros((0, SAMPLES + 1, 2))
+
+    @cached_property
+    def _bounds(self) -> NDArray[np.float64]:
+        """Left, top, right and bottom of what each link can reach: a curve stays among its handles."""
+        spans = [len(wire.curves) for wire in self.wires]
+        handles = np.array([shape for wire in self.wires for shape in wire.curves], float).reshape(-1, 4, 2)
+        starts = np.cumsum([0, *spans[:-1]])
+        low = np.minimum.reduceat(handles.min(axis=1), starts)
+        high = np.maximum.reduceat(handles.max(axis=1), starts)
+        return np.hstack([low, high])
+
+    def list_visible(self, rect: Rect) -> list[Wire]:
+        """The links of which a part may lie in a rectangle."""
+        if not self.wires:
+            return []
+        left, top, right, bottom = self._bounds.T
+        inside = (left <= rect[2]) & (right >= rect[0]) & (top <= rect[3]) & (bottom >= rect[1])
+        return [self.wires[number] for number in inside.nonzero()[0].tolist()]
 
     @cached_property
     def by_target(self) -> Mapping[Port, Wire]:

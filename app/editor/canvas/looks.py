@@ -42,13 +42,17 @@ class LookFacts:
 
     def faults(self, key: ElementId) -> tuple[str, ...]:
         """The errors of an element."""
-        errors = tuple(problem.sentence for problem in self.problems.get(key, ()) if problem.severity == "error")
-        fault = self.context.preview.faults.get(self.prefix + key, "")
+        problems, all_faults = self.problems.get(key), self.context.preview.faults
+        if not problems and not all_faults:
+            return ()
+        errors = tuple(problem.sentence for problem in problems or () if problem.severity == "error")
+        fault = all_faults.get(self.prefix + key, "")
         return (*errors, fault) if fault and fault not in errors else errors
 
     def warnings(self, key: ElementId) -> tuple[str, ...]:
         """The warnings of an element."""
-        return tuple(problem.sentence for problem in self.problems.get(key, ()) if problem.severity == "warning")
+        problems = self.problems.get(key, ())
+        return tuple(problem.sentence for problem in problems if problem.severity == "warning") if problems else ()
 
     def make_look(self, key: ElementId, live: frozenset[str]) -> NodeLook:
         """Make the look of one node or end."""

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from .context import CanvasContext
 
 _SIZE, _GAP, _PAD = (168.0, 112.0), 12.0, 6.0
+_ROUNDED = 4.0
+"""The height in pixels from which a box has round corners: on smaller ones nobody sees that they have a pixel each."""
 
 
 @dataclass
@@ -41,12 +43,12 @@ class Minimap:
         Its bounds include the visible part, so that the rectangle of the view never leaves the map.
         """
         left, top, right, bottom = brush.visible
-        self.is_needed = self.dragging or any(
-            box.x < left or box.y < top or box.x + box.w > right or box.y + box.h > bottom
-            for box in scene.boxes.values()
+        around = scene.bounds or brush.visible
+        self.is_needed = self.dragging or (
+            around[0] < left or around[1] < top or around[2] > right or around[3] > bottom
         )
         rect = self.find_rect(panel)
-        bounds = find_bounds([*(box.rect for box in scene.boxes.values()), brush.visible])
+        bounds = find_bounds([around, brush.visible])
         if rect is None or bounds is None:
             return
         pad = _PAD * ui_scale()
@@ -57,14 +59,15 @@ class Minimap:
         draw, palette, selection = brush.draw, self.context.palette, self.context.session.selection
         rounding = 6.0 * ui_scale()
         draw.add_rect_filled(rect[:2], rect[2:], u32(palette.panel, 0.88), rounding)
-        faint = u32(palette.dim, 0.2)
+        faint, marks = u32(palette.dim, 0.2), brush.ink.marks
         for key, box in scene.boxes.items():
             if box.sort == "dot":
                 continue
-            low = left + box.x * scale, top + box.y * scale
-            high = max(low[0] + box.w * scale, low[0] + 2.0), max(low[1] + box.h * scale, low[1] + 1.5)
-            header = brush.ink.marks.get(box.layout.category, brush.ink.marks[""]) if box.layout else faint
-            draw.add_rect_filled(low, high, brush.ink.accent if key in selection else header, 1.0)
+            x, y, width, height = left + box.x * scale, top + box.y * scale, box.w * scale, box.h * scale
+            header = marks.get(box.layout.category, marks[""]) if box.layout else faint
+            color = brush.ink.accent if key in selection else header
+            rounded = 1.0 if height >= _ROUNDED else 0.0
+            draw.add_rect_filled((x, y), (x + max(width, 2.0), y + max(height, 1.5)), color, rounded)
         visible = brush.visible
         low, high = (
             (left + visible[0] * scale, top + visible[1] * scale),

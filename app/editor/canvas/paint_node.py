@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import Literal
 
 from halation.nodes import Kind
 from imgui_bundle import icons_fontawesome_6 as icons
@@ -23,6 +25,8 @@ PIN = 5.0
 _TOP = int(imgui.ImDrawFlags_.round_top)
 _ALL = int(imgui.ImDrawFlags_.round_all)
 _INSET = 12.0
+
+PinShape = Literal["circle", "diamond", "square", "triangle"]
 
 
 @dataclass(slots=True)
@@ -98,17 +102,18 @@ def paint_pin(
     s = brush.to.scale
     cx, cy = brush.to.to_screen(x, y)
     r, rim, draw = (PIN + grow) * s, brush.ink.canvas, brush.draw
-    if kind is Kind.VECTOR:
+    shape = find_pin_shape(kind)
+    if shape == "diamond":
         for size, ink in ((r * 1.45, rim), (r * 1.15, color), (r * 0.5, core)):
             if ink:
                 draw.add_quad_filled((cx - size, cy), (cx, cy - size), (cx + size, cy), (cx, cy + size), ink)
         return
-    if kind is not None and kind.is_planned:
+    if shape == "triangle":
         for size, ink in ((r * 1.5, rim), (r * 1.15, color), (r * 0.5, core)):
             if ink:
                 draw.add_triangle_filled((cx - size, cy - size), (cx + size, cy), (cx - size, cy + size), ink)
         return
-    if kind is not None and kind.is_single:
+    if shape == "square":
         for size, ink in ((r * 1.05, rim), (r * 0.82, color), (r * 0.4, core)):
             if ink:
                 draw.add_rect_filled(
@@ -122,6 +127,16 @@ def paint_pin(
     draw.add_circle_filled((cx, cy), r, color)
     if core:
         draw.add_circle_filled((cx, cy), r * 0.45, core)
+
+
+@lru_cache
+def find_pin_shape(kind: Kind | None) -> PinShape:
+    """The shape of a socket; asked for each socket in each frame, so it is found once."""
+    if kind is Kind.VECTOR:
+        return "diamond"
+    if kind is not None and kind.is_planned:
+        return "triangle"
+    return "square" if kind is not None and kind.is_single else "circle"
 
 
 def _paint_node_pin(brush: DrawContext, box: ElementBox, pin: Pin, output: bool, look: NodeLook) -> None:
@@ -139,8 +154,7 @@ def _paint_node_pin(brush: DrawContext, box: ElementBox, pin: Pin, output: bool,
 
 
 def _is_linked(box: ElementBox, pin: Pin) -> bool:
-    rows = box.layout.rows if box.layout else ()
-    return any(row.linked for row in rows if row.left is pin) or bool(box.layout and box.layout.collapsed)
+    return box.layout is not None and (box.layout.collapsed or pin.name in box.layout.linked)
 
 
 def _paint_title(brush: DrawContext, box: ElementBox, layout: NodeLayout, look: NodeLook, y: float) -> None:

@@ -11,7 +11,7 @@ from typing import Literal
 from ...authoring.edits.element_id import NO_ELEMENT, ElementId
 from ...authoring.edits.link_curves import Curve, make_curve
 from ...graph import Port
-from .geometry import Point, Rect, contains
+from .geometry import Point, Rect, contains, find_bounds
 from .layout import HEADER, ROW, NodeLayout, Pin
 from .link_index import LinkIndex, Wire
 
@@ -83,9 +83,22 @@ class CanvasScene:
         return {key: (box.w, box.h) for key, box in self.boxes.items()}
 
     @cached_property
-    def pins(self) -> dict[tuple[Port, bool], float]:
+    def bounds(self) -> Rect | None:
+        """The smallest rectangle around all elements, or None if there are none."""
+        return find_bounds(box.rect for box in self.boxes.values())
+
+    def find_pins(self) -> dict[tuple[Port, bool], float]:
         """How far below the top of its element each socket is, by port and whether it is an output."""
         return {(port, output): pin.y for output in (False, True) for port, _, pin in self.list_pins(output)}
+
+    def list_boxes(self, rect: Rect) -> list[ElementBox]:
+        """The elements that share any point with a rectangle, in the order in which they are drawn."""
+        left, top, right, bottom = rect
+        return [
+            box
+            for box in self.boxes.values()
+            if box.x <= right and box.y <= bottom and box.x + box.w >= left and box.y + box.h >= top
+        ]
 
     def move(self, keys: Collection[ElementId], dx: float, dy: float) -> CanvasScene:
         """A scene with some elements moved; links follow."""

@@ -68,16 +68,18 @@ class SceneBuilder:
         return CanvasScene(boxes, net)
 
     def _update(self, graph: Graph, options: SceneOptions) -> tuple[dict[ElementId, ElementBox], LinkIndex] | None:
-        """The last boxes and links, with new boxes of changed nodes; None where more differs than values."""
-        if self._last is None or self._last[1] != options:
+        """The last boxes and links, with new boxes of changed nodes; None where more differs than values, pictures."""
+        if self._last is None or self._last[1][1:] != options[1:]:
             return None
-        last, (pictures, open, _), boxes, net = self._last
+        last, (last_pictures, *_), boxes, net = self._last
+        pictures, open, _ = options
+        swapped = {*pictures} ^ {*last_pictures}
         parts = ("ui", "links", "inputs", "outputs", "muted")
         if any(getattr(graph, part) is not getattr(last, part) for part in parts) or [*graph.nodes] != [*last.nodes]:
             return None
         fresh: dict[ElementId, ElementBox] = {}
         for id, item in graph.nodes.items():
-            if item is not last.nodes[id]:
+            if item is not last.nodes[id] or id in swapped:
                 box = boxes[node := ElementId(id)]
                 layout = self._find_layout(
                     graph, id, item, box.layout is not None and box.layout.collapsed, pictures, open
@@ -87,6 +89,10 @@ class SceneBuilder:
                 if _find_interface(graph, Port(id, "")) != _find_interface(last, Port(id, "")):
                     return None
                 fresh[node] = replace(box, h=layout.height, layout=layout)
+        if swapped:  # a picture lies below the pin of an end: links stay where they are
+            for key, layout in self._make_ends(graph, pictures):
+                if key in swapped:
+                    fresh[key] = replace(boxes[key], h=layout.height, layout=layout)
         return ({**boxes, **fresh} if fresh else boxes), net
 
     def _rebuild(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from typing import Literal
 
@@ -29,8 +29,8 @@ class CanvasView:
     """The canvas position under the mouse when it was last over the panel: where new things go."""
     sizes: Sizes | None = None
     """Width and height of elements as drawn last, in canvas units."""
-    pins: Pins | None = None
-    """How far below the tops of elements their sockets were drawn last, in canvas units."""
+    find_pins: Callable[[], Pins] = dict
+    """How far below the tops of elements their sockets were drawn last, in canvas units; found when it is asked for."""
     hovered: bool = False
     """True while the mouse is over the canvas."""
     panning: bool = False

@@ -67,36 +67,41 @@ def make_rows(vertices: Array, indices: Array, commands: Array) -> Array:
 
 def find_boxes(rows: Array) -> Array:
     """The box of each triangle, clipped: float [n, 4]; left is beyond right where nothing is drawn."""
-    corners = np.ascontiguousarray(rows[:, :_CLIP]).view(np.float32).reshape(-1, 3, VERTEX)[..., :2]
-    clip = np.ascontiguousarray(rows[:, _CLIP:_TEXTURE]).view(np.float32)
-    return np.hstack([np.maximum(corners.min(1), clip[:, :2]), np.minimum(corners.max(1), clip[:, 2:])])
+    numbers = np.ascontiguousarray(rows).view(np.float32)
+    a, b, c = (numbers[:, start : start + 2] for start in range(0, _CLIP, VERTEX))
+    low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+    clip = numbers[:, _CLIP:_TEXTURE]
+    return np.hstack([np.maximum(low, clip[:, :2]), np.minimum(high, clip[:, 2:])])
 
 
-def find_changed_boxes(before: Array, after: Array) -> list[Box]:
-    """The boxes in which two lists of rows may draw other pixels."""
+def find_changed_boxes(before: Array, after: Array, boxes_before: Array, boxes_after: Array) -> list[Box]:
+    """The boxes in which two lists of rows, whose triangles have these boxes, may draw other pixels."""
     shorter = min(len(before), len(after))
     if len(before) == len(after):
         changed = np.flatnonzero((before != after).any(1))
         groups = np.split(changed, np.flatnonzero(np.diff(changed) > GAP) + 1) if len(changed) else []
         if len(groups) > MOST_BOXES:
             groups = [changed]
-        return [box for group in groups for box in surround_rows(np.vstack([before[group], after[group]]))]
+        return [box for group in groups for box in surround(np.vstack([boxes_before[group], boxes_after[group]]))]
     same = (before[:shorter] == after[:shorter]).all(1)
     start = shorter if same.all() else int(same.argmin())
     left = shorter - start
     same = (before[len(before) - left :] == after[len(after) - left :]).all(1)[::-1]
     end = left if same.all() else int(same.argmin())
-    return surround_rows(np.vstack([before[start : len(before) - end], after[start : len(after) - end]]))
+    return surround(np.vstack([boxes_before[start : len(before) - end], boxes_after[start : len(after) - end]]))
 
 
-def find_picture_boxes(commands: Array, rows: Array, textures: Collection[int]) -> list[Box]:
-    """The boxes of pictures whose pixels have changed, by the names of their textures in OpenGL."""
+def find_picture_boxes(commands: Array, boxes: Array, textures: Collection[int]) -> list[Box]:
+    """The boxes of pictures whose pixels have changed, by the names of their textures in OpenGL.
+
+    `boxes` are those of all triangles.
+    """
     shows = np.isin(commands["texture"], list(textures)) & (commands["shared_texture"] == 0)
     ends = np.cumsum(commands["count"] // 3)
     return [
         box
         for number in np.flatnonzero(shows).tolist()
-        for box in surround_rows(rows[ends[number] - commands["count"][number] // 3 : ends[number]])
+        for box in surround(boxes[ends[number] - commands["count"][number] // 3 : ends[number]])
     ]
 
 
@@ -111,11 +116,13 @@ def find_covers(rows: Array) -> Covers:
     """
     if len(rows) < 2:
         return np.empty(0, np.intp), np.empty((0, 4), np.float32)
-    corners = np.ascontiguousarray(rows[:, :_CLIP]).reshape(-1, 3, VERTEX)
-    is_solid = (rows[:, _TEXTURE : _TEXTURE + 2] != 0).any(1) & (corners[..., 4] >> 24 == 255).all(1)
-    is_solid &= (corners[:, 1:, 2:] == corners[:, :1, 2:]).all((1, 2))
+    is_solid = (rows[:, _TEXTURE] | rows[:, _TEXTURE + 1] != 0) & (rows[:, 4] >> 24 == 255)
+    for number in (2, 3, 4):  # u, v and the color are those of the first vertex
+        for vertex in (VERTEX, 2 * VERTEX):
+            is_solid &= rows[:, vertex + number] == rows[:, number]
     starts = np.flatnonzero(is_solid[:-1] & is_solid[1:])
-    starts = starts[_are_rectangles(corners[starts, :, :2], corners[starts + 1, :, :2])]
+    first, second = (rows[at, :_CLIP].reshape(-1, 3, VERTEX)[..., :2] for at in (starts, starts + 1))
+    starts = starts[_are_rectangles(first, second)]
     return starts, find_boxes(rows[starts])
 
 
@@ -135,9 +142,8 @@ def _are_rectangles(first: Array, second: Array) -> Array:
     return is_split & (b[:, 0] == x[1]) & (b[:, 1] == y[0]) & (d[:, 0] == x[0]) & (d[:, 1] == y[1])
 
 
-def surround_rows(rows: Array) -> list[Box]:
-    """The box of all rows, or none if they draw nothing."""
-    boxes = find_boxes(rows)
+def surround(boxes: Array) -> list[Box]:
+    """The box of all boxes of triangles, or none if they draw nothing."""
     boxes = boxes[(boxes[:, 0] < boxes[:, 2]) & (boxes[:, 1] < boxes[:, 3])]
     if not len(boxes):
         return []

@@ -26,13 +26,14 @@ from .damage import (
     Array,
     Box,
     Covers,
+    find_boxes,
     find_changed_boxes,
     find_covers,
     find_last_cover,
     find_picture_boxes,
     make_rows,
     merge_boxes,
-    surround_rows,
+    surround,
 )
 
 TRIALS = 3
@@ -51,6 +52,7 @@ class _DrawnList(Struct):
     indices: bytes
     commands: bytes
     _rows: Array | None = None
+    _boxes: Array | None = None
     _covers: Covers | None = None
 
     @property
@@ -77,6 +79,13 @@ class _DrawnList(Struct):
         return self._rows
 
     @property
+    def boxes(self) -> Array:
+        """The boxes of its triangles; the next frame compares with them too."""
+        if self._boxes is None:
+            self._boxes = find_boxes(self.rows)
+        return self._boxes
+
+    @property
     def covers(self) -> Covers:
         """Its opaque rectangles."""
         if self._covers is None:
@@ -85,7 +94,7 @@ class _DrawnList(Struct):
 
     def take_from(self, equal: _DrawnList) -> None:
         """Take what was found out about a list that draws the same."""
-        self._rows, self._covers = equal._rows, equal._covers
+        self._rows, self._boxes, self._covers = equal._rows, equal._boxes, equal._covers
 
 
 class WindowPainter:
@@ -202,15 +211,15 @@ def _find_changes(before: Sequence[_DrawnList], after: Sequence[_DrawnList], wri
     for drawn in after:
         past = earlier.pop(drawn.name, None)
         if past is None:
-            boxes += surround_rows(drawn.rows)
+            boxes += surround(drawn.boxes)
             continue
         if past.memory != drawn.memory:
-            boxes += find_changed_boxes(past.rows, drawn.rows)
+            boxes += find_changed_boxes(past.rows, drawn.rows, past.boxes, drawn.boxes)
         else:
             drawn.take_from(past)
         if written and np.isin(drawn.command_table["texture"], list(written)).any():
-            boxes += find_picture_boxes(drawn.command_table, drawn.rows, written)
-    return boxes + [box for gone in earlier.values() for box in surround_rows(gone.rows)]
+            boxes += find_picture_boxes(drawn.command_table, drawn.boxes, written)
+    return boxes + [box for gone in earlier.values() for box in surround(gone.boxes)]
 
 
 def _is_reordered(before: Sequence[_DrawnList], after: Sequence[_DrawnList]) -> bool:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
+from drawn_links import sample_wire
 from halation.authoring.edits.decor import add_frame
 from halation.authoring.edits.element_id import ElementId
+from halation.authoring.edits.elements import list_elements
 from halation.authoring.edits.layout import pin_places, positions
+from halation.editor.canvas.geometry import overlaps
 from halation.editor.canvas.gestures import (
     LinkGesture,
     MoveGesture,
@@ -25,6 +29,7 @@ from halation.editor.canvas.staging import SceneBuilder, measure_comment
 from halation.editor.shared.entries import GROUP, arrange_entries, graph_entries, keep_fitting, node_entries
 from halation.graph import Graph, Input, Output, Port, Unknown
 from halation.nodes import catalogue
+from random_graphs import random_graph
 
 from gui_canvas import chain  # isort: skip
 
@@ -244,3 +249,38 @@ def test_the_mask_takes_no_row_until_its_values_are_set() -> None:
     assert not {"mix", "invert_mask"} & {row.value.name for row in layout.rows if row.value}
     mixed = staged(chain("exposure").set(P("exposure.mix"), 0.5), open="exposure").boxes["exposure"].layout
     assert "mix" in {row.value.name for row in mixed.rows if row.value}
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_picture_that_comes_or_goes_changes_only_its_element(seed: int) -> None:
+    graph, rng = random_graph(seed, 12), np.random.default_rng(seed)
+    keys, builder = list_elements(graph), SceneBuilder()
+    before = staged(graph, builder)
+    for _ in range(5):
+        pictures = frozenset(key for key in keys if rng.random() < 0.5)
+        scene = staged(graph, builder, pictures)
+        assert scene.boxes == staged(graph, None, pictures).boxes
+        assert scene.wires == staged(graph, None, pictures).wires
+        assert scene.links is before.links, "links are not routed again"
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_is_in_view_is_what_a_dense_sample_finds(seed: int) -> None:
+    scene, rng = staged(random_graph(seed, 12)), np.random.default_rng(seed)
+    for _ in range(20):
+        x, y = rng.uniform(-200, 1500, 2)
+        rect = (x, y, x + rng.uniform(20, 800), y + rng.uniform(20, 800))
+        found = {wire.target for wire in scene.links.list_visible(rect)}
+        sampled = {
+            wire.target
+            for wire in scene.wires
+            for points in [sample_wire(wire)]
+            if ((points >= rect[:2]).all(1) & (points <= rect[2:]).all(1)).any()
+        }
+        assert sampled <= found
+        assert scene.list_boxes(rect) == [box for box in scene.boxes.values() if overlaps(box.rect, rect)]
+
+
+def test_scenes_without_links_show_none() -> None:
+    assert staged(Graph()).links.list_visible((0.0, 0.0, 9.0, 9.0)) == []
+    assert staged(Graph()).bounds is None

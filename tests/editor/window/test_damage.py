@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from halation.editor.window.damage import (
     COMMAND,
+    find_boxes,
     find_changed_boxes,
     find_covers,
     find_last_cover,
@@ -15,6 +16,11 @@ from halation.editor.window.damage import (
 )
 
 SIZE = (64, 48)
+
+
+def find_changes(before: np.ndarray, after: np.ndarray) -> list[tuple[int, int, int, int]]:
+    """The boxes in which two lists of rows may draw other pixels."""
+    return find_changed_boxes(before, after, find_boxes(before), find_boxes(after))
 
 
 def make_list(rects: list[tuple[int, int, int, int, int]], clips: list[tuple[int, int, int, int]], texture: int = 7):
@@ -70,7 +76,7 @@ def test_no_pixel_outside_of_the_boxes_differs(seed: int) -> None:
                 after[place] = (*after[place][:4], 5)
             case _:
                 new_clips[1] = (8, 0, 50, 44)
-    boxes = find_changed_boxes(make_list(before, clips)[1], make_list(after, new_clips)[1])
+    boxes = find_changes(make_list(before, clips)[1], make_list(after, new_clips)[1])
     outside = np.ones((SIZE[1], SIZE[0]), bool)
     for left, top, right, bottom in boxes:
         outside[max(top, 0) : bottom, max(left, 0) : right] = False
@@ -86,17 +92,17 @@ def test_equal_lists_have_no_box() -> None:
     random = np.random.default_rng(0)
     rects = [choose(random) for _ in range(40)]
     rows = make_list(rects, [(0, 0, 64, 48)])[1]
-    assert find_changed_boxes(rows, rows.copy()) == []
+    assert find_changes(rows, rows.copy()) == []
     empty = make_rows(np.empty((0, 5), np.uint32), np.empty(0, np.uint32), np.empty(0, COMMAND))
-    assert find_changed_boxes(empty, empty) == []
-    assert find_changed_boxes(empty, rows) == find_changed_boxes(rows, empty) != []
+    assert find_changes(empty, empty) == []
+    assert find_changes(empty, rows) == find_changes(rows, empty) != []
 
 
 def test_a_picture_has_the_box_of_its_texture() -> None:
     commands, rows = make_list([(1, 2, 8, 4, 1), (20, 10, 10, 10, 1)], [(0, 0, 64, 48), (0, 0, 25, 48)])
-    assert find_picture_boxes(commands, rows, {8}) == [(20, 10, 25, 20)]
-    assert find_picture_boxes(commands, rows, {7, 8}) == [(1, 2, 9, 6), (20, 10, 25, 20)]
-    assert find_picture_boxes(commands, rows, {3}) == []
+    assert find_picture_boxes(commands, find_boxes(rows), {8}) == [(20, 10, 25, 20)]
+    assert find_picture_boxes(commands, find_boxes(rows), {7, 8}) == [(1, 2, 9, 6), (20, 10, 25, 20)]
+    assert find_picture_boxes(commands, find_boxes(rows), {3}) == []
 
 
 def test_far_boxes_stay_apart() -> None:
