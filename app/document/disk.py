@@ -5,7 +5,10 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from halation import presets
+
 from ..errors import DocumentError, InputError
+from ..graph.names import did_you_mean
 from ..resources.input_files import open_file
 from ..resources.sandbox import Sandbox, make_path_printable
 from .limits import MAX_BYTES, size_fault
@@ -50,6 +53,13 @@ def resolve_file(path: Path) -> Path | None:
         return real if real.exists() and not real.is_dir() else None
     except (OSError, ValueError, RuntimeError):
         return None
+
+
+def suggest_group_file(file: Path, path: str) -> str:
+    """What a group means whose `file` is not there, as the end of a sentence; `path` is how the graph names it."""
+    if any(preset.stem == path for preset in presets.paths()):
+        return "; it is a preset: halation demo --copy FOLDER writes the files of presets"
+    return did_you_mean(file.name, list_graph_files(file.parent))
 
 
 def list_graph_files(folder: Path) -> tuple[str, ...]:

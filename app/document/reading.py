@@ -23,7 +23,6 @@ from pathlib import Path
 from typing import Any, cast, get_args
 
 import msgspec
-from halation import presets
 from halation.nodes import ColorSettings, LengthUnits, Node, Plain, Value, catalogue, length_unit_fault
 from msgspec import Struct, field
 
@@ -42,7 +41,7 @@ from ..resources.sandbox import Sandbox
 from . import limits, records
 from .animation import read_animation
 from .code import CodeTally, read_code_file
-from .disk import list_graph_files, read_text, resolve_file
+from .disk import read_text, resolve_file, suggest_group_file
 from .migrations import MIGRATIONS, Migration, migrate, newest
 from .records import convert, read_type, unknown_keys
 from .syntax import member, parse, word
@@ -388,10 +387,7 @@ class _BodyReader(Struct):
             raise DocumentError(self.file, at, f"the group file '{inner}' {reason}")
         real = resolve_file(inner)
         if real is None:
-            is_preset = any(preset.stem == path for preset in presets.paths())
-            near = did_you_mean(inner.name, list_graph_files(inner.parent))
-            hint = "; it is a preset: halation demo --copy FOLDER writes the files of presets" if is_preset else near
-            fault = f"the group file '{inner}' does not exist{hint}"
+            fault = f"the group file '{inner}' does not exist{suggest_group_file(inner, path)}"
             raise DocumentError(self.file, at, fault, rule="missing-group")
         if real in self.outer:
             loop = " -> ".join(file.name for file in (*self.outer[self.outer.index(real) :], real))
