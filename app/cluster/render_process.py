@@ -13,6 +13,7 @@ import os
 import queue
 import signal
 import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -39,6 +40,9 @@ and render again."""
 
 _PATIENCE = 1.0
 """Seconds that a process may take to remove what it has begun to write: a frame is encoded in less, mostly."""
+
+_INTERRUPTED = "halation: interrupted"
+"""How the sentence of a command begins that was told to end."""
 
 ProcessKind = tuple[bool, str, int, str]
 
@@ -80,12 +84,14 @@ class RenderProcess:
             [*worker_command(), "--chunks"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
             encoding="utf-8",
             errors="surrogateescape",
             env=environment,
         )
         self._lines = queue.SimpleQueue[str | None]()
-        threading.Thread(target=self._listen, name="render process", daemon=True).start()
+        for work in (self._listen, self._pass_on):
+            threading.Thread(target=work, name="render process", daemon=True).start()
 
     @property
     def number(self) -> int:
@@ -202,6 +208,14 @@ class RenderProcess:
             for line in lines:
                 self._lines.put(line)
         self._lines.put(None)
+
+    def _pass_on(self) -> None:
+        """Show what drivers and libraries say, and not that the process was told to end: who tells it knows."""
+        assert self._process.stderr is not None
+        with self._process.stderr as lines:
+            for line in lines:
+                if not line.startswith(_INTERRUPTED):
+                    print(line, end="", file=sys.stderr, flush=True)
 
     def _describe_end(self) -> str:
         code = self._process.wait()
