@@ -33,6 +33,9 @@ _FILE_KEYS = ("inputs", "outputs", "controls", "nodes", "links", "settings", "an
 _NODE_KEYS = ("type", "version", "values", "muted", "code", "file", "path", "graph", "package")
 """Keys of a graph file, and of a node in it, that a similar unknown key may stand for."""
 
+_LONG = 4000
+"""Letters of a sentence that names no more of the groups around it: ids may be long, and groups deep."""
+
 
 class Problem(Record, frozen=True):
     """A mistake in a graph. `sentence` names node and socket and says what to do.
@@ -61,8 +64,16 @@ def problems(graph: Graph, node_types: Mapping[str, type[Node]] | None = None) -
     `node_types` are the installed ones, for suggestions. An input without file or default is none: it may be bound.
     """
     with limit_suggestions():
-        problems_ = list(_inside(graph, catalogue() if node_types is None else node_types, 0))
+        problems_ = list(find_problems(graph, node_types))
     return tuple(sorted(problems_, key=lambda item: (item.severity, item.node, item.socket, item.sentence)))
+
+
+def find_problems(graph: Graph, node_types: Mapping[str, type[Node]] | None = None) -> Iterator[Problem]:
+    """What `problems` returns, one after the other in the order of the graph: there may be more than fit into memory.
+
+    Call it inside of `limit_suggestions`.
+    """
+    return _inside(graph, catalogue() if node_types is None else node_types, 0)
 
 
 def recheck(
@@ -147,7 +158,8 @@ def _group(id: str, item: Group, node_types: Mapping[str, type[Node]], depth: in
     for problem in _inside(item.graph, node_types, depth + 1):
         where = f"{id}/{problem.node}" if problem.node else id
         at = f"nodes.{id}.{f'graph.{problem.at}' if not item.path else 'path'}" if problem.at else ""
-        yield replace(problem, node=where, sentence=f"in group '{id}': {problem.sentence}", at=at)
+        prefix = f"in group '{id}': " if len(problem.sentence) < _LONG else ""
+        yield replace(problem, node=where, sentence=f"{prefix}{problem.sentence}", at=at)
 
 
 def _links(graph: Graph) -> Iterator[Problem]:

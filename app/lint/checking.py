@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import chain
 from pathlib import Path
@@ -12,11 +12,12 @@ from halation.nodes import Node, catalogue
 from msgspec import Struct
 from msgspec.structs import replace
 
-from .. import document, graph
+from .. import document
 from ..document.disk import read_text
 from ..document.positions import Positions
 from ..errors import DocumentError, GraphError
 from ..graph import Graph, Group, Problem
+from ..graph.problems import find_problems
 from ..graph.rules import RULES as GRAPH_RULES
 from ..graph.rules import Rule
 from ..resources.collection import pause_collection
@@ -129,12 +130,14 @@ class GraphChecker(Struct, dict=True, eq=False):
 
     def _find_problems(self, whole_graph: Graph, text: str) -> Iterator[tuple[Problem, int, int]]:
         """Problems, each with its line if its JSON path does not give the line, and its exit code."""
-        graph_problems = graph.problems(whole_graph, self.types)
-        for problem in graph_problems:
-            yield problem, 0, GraphError.exit_code if problem.severity == "error" else 0
+        has_errors = False
+        for problem in find_problems(whole_graph, self.types):
+            is_error = problem.severity == "error"
+            has_errors = has_errors or is_error
+            yield problem, 0, GraphError.exit_code if is_error else 0
         for problem, line in texts.find_text_problems(whole_graph, text, self.types):
             yield problem, line, 0
-        if any(problem.severity == "error" for problem in graph_problems):
+        if has_errors:
             return
         for body, inside, at in bodies(whole_graph):
             sheet = GraphFacts(body)
@@ -155,7 +158,7 @@ class GraphChecker(Struct, dict=True, eq=False):
         An allowance is called stale only if its rule was sure to find what it allows: not a rule that is off or that
         depends on other files, and none at all where an error ended the check early.
         """
-        reported, used = list[tuple[Problem, int, int]](), set[str]()
+        reported, used, count, whole = list[tuple[Problem, int, int]](), set[str](), 0, True
         allowing_graph = whole_graph if whole_graph is not None and whole_graph.settings.allow else None
         for item in problems:
             if item[0].rule.name in self.off:
@@ -163,17 +166,17 @@ class GraphChecker(Struct, dict=True, eq=False):
             if allowing_graph is not None and (entry := allowing.find_allowance(allowing_graph, item[0])):
                 used.add(entry)
             else:
+                count, whole = count + 1, whole and item[0].severity != "error"
                 reported.append(item)
+                if len(reported) > 2 * MAX_FINDINGS:  # not all are kept: there may be more than fit into memory
+                    reported = _choose_worst(reported)
         if allowing_graph is not None and allowing.STALE_ALLOW.name not in self.off:
-            whole = not any(problem.severity == "error" for problem, _, _ in reported)
             unsure = {*_OUTER, *self.off} if whole else RULES
-            reported += [
-                (problem, 0, 0) for problem in allowing.find_stale_allowances(allowing_graph, used, RULES, unsure)
-            ]
+            stale = [(problem, 0, 0) for problem in allowing.find_stale_allowances(allowing_graph, used, RULES, unsure)]
+            reported, count = reported + stale, count + len(stale)
         if not reported:
             return CheckReport(file, ())
-        # The worst findings are kept; `sorted` keeps the order of equal ones.
-        chosen = sorted(reported, key=lambda item: -item[2])[:MAX_FINDINGS]
+        chosen = _choose_worst(reported)
         places = [() if line else _find_places(whole_graph, problem) for problem, line, _ in chosen]
         has_double_key = any(problem.rule is texts.DOUBLE_KEY for problem, _, _ in chosen)
         lines = Positions(text, chain.from_iterable(places), first=not has_double_key)
@@ -181,7 +184,12 @@ class GraphChecker(Struct, dict=True, eq=False):
             Finding(line or _line(lines, paths, problem), problem, code)
             for (problem, line, code), paths in zip(chosen, places, strict=True)
         ]
-        return CheckReport(file, tuple(sorted(findings, key=_order)), len(reported) - len(chosen))
+        return CheckReport(file, tuple(sorted(findings, key=_order)), count - len(chosen))
+
+
+def _choose_worst(reported: Iterable[tuple[Problem, int, int]]) -> list[tuple[Problem, int, int]]:
+    """The worst of problems, each with its line and exit code; of equal ones the first."""
+    return sorted(reported, key=lambda item: -item[2])[:MAX_FINDINGS]
 
 
 def _order(finding: Finding) -> tuple[int, str, str, str]:

@@ -8,6 +8,7 @@ import sys
 import tracemalloc
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ from halation.document.positions import Positions
 from halation.errors import DocumentError, InputError
 from halation.graph.names import can_compare_all
 from halation.inputs.provider import MediaProvider
-from halation.lint import compiled
+from halation.lint import checking, compiled
 from halation.lint.checking import MAX_FINDINGS, CheckReport, GraphChecker
 from halation.lint.compiled import NotingProvider
 from halation.nodes import Kind
@@ -25,7 +26,7 @@ from halation.resources.picture import Picture
 from halation.resources.provider import PictureProbe
 from halation.resources.sandbox import UNRESTRICTED
 from halation.resources.suggestions import limit_suggestions, may_compare
-from large_graphs import GRAPHS, TEXTS, chain, coded, fan, missing
+from large_graphs import GRAPHS, TEXTS, chain, coded, fan, missing, mistyped
 from msgspec.structs import replace
 from oiio_pictures import write_picture
 
@@ -192,6 +193,31 @@ def test_lines_behind_the_last_finding_are_not_read() -> None:
     assert calls[0] == calls[1]
     line = long.count("\n", 0, long.index('"n7"')) + 4  # the node, its type, its values, and the first of them
     assert [Positions(long, paths, first=first).line(paths[1]) for first in (True, False)] == [line, line]
+
+
+def test_findings_that_are_left_out_are_not_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ids of 900 letters in 18 groups inside each other made two gigabytes of sentences."""
+    kept: list[int] = []
+    choose = checking._choose_worst
+
+    def count(reported: list[Any]) -> list[Any]:
+        kept.append(len(reported))
+        return choose(reported)
+
+    monkeypatch.setattr(checking, "MAX_FINDINGS", 5)
+    monkeypatch.setattr(checking, "_choose_worst", count)
+    report = check(json.dumps(mistyped(100)))
+    assert len(kept) > 10 and max(kept) == 11
+    assert len(report.findings) == 5 and len(report.findings) + report.omitted >= 101
+
+
+def test_a_sentence_does_not_name_all_of_many_long_groups() -> None:
+    body: dict[str, object] = {"nodes": {"n": {"type": "x"}}, "outputs": {"a": {}}}
+    for _ in range(18):
+        body = {"nodes": {"g" * 900: {"type": "group", "graph": body}}}
+    sentences = [finding.problem.sentence for finding in check(json.dumps({"halation": 1, **body})).findings]
+    assert 4000 < max(map(len, sentences)) < 6000
+    assert any(sentence.endswith("or remove the node") for sentence in sentences)
 
 
 def test_errors_are_not_left_out_for_warnings() -> None:
