@@ -21,7 +21,7 @@ from large_graphs import GRAPHS
 CHAINS = (20_000, 99_000)
 """Nodes; a file may hold 100,000."""
 
-SHAPES = {"mislinked": 99_000, "paired": 99_000, "coded": 99_000, "animated": 99_000, "missing": 40_000}
+SHAPES = {"mislinked": 99_000, "paired": 99_000, "coded": 99_000, "animated": 99_000, "missing": 10_000}
 """Graphs of `large_graphs`, and how many nodes of each: links to nothing, loops, code, expressions, missing files."""
 
 
