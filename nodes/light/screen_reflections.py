@@ -1,7 +1,9 @@
+import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 from .._declare import (
+    REFERENCE_HEIGHT,
     CameraSocket,
     Doc,
     Draw,
@@ -109,7 +111,8 @@ class ScreenReflections(Filter):
             unit="count",
             minimum=1,
             maximum=8192,
-            doc="The most steps of a ray. With too few, distant reflections are lost where the picture is complex.",
+            doc="The most steps of a ray, in a picture of up to 1080 lines; in larger ones more. With too few, distant "
+            "reflections are lost where the picture is complex.",
         ),
     ] = 256
 
@@ -186,7 +189,7 @@ class ScreenReflections(Filter):
             "fade": self.fade,
             "border": self.border,
             "sky": self.sky,
-            "steps": self.steps,
+            "steps": math.ceil(self.steps * max(draw.size[1] / REFERENCE_HEIGHT, 1.0)),
         }
         if not draw.is_linked(self.material) and self.roughness <= 0.0:
             return draw(

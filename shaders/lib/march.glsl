@@ -207,6 +207,10 @@ vec4 march_surfaces() {
     return vec4(joined, 0.0, 0.0);
 }
 
+// As many steps as the longest ray through a picture needs: for each pixel on its way one forward, and one to a smaller
+// cell.
+int march_longest(ivec2 size) { return 2 * (size.x + size.y) + 2 * MARCH_LEVELS; }
+
 // Follows a ray through the picture `surfaces`, in at most `steps` steps. True where it meets a surface, and where it
 // reaches infinity at a background pixel: then it is still `endless`.
 bool march(inout March ray, ivec2 size, float thickness, int steps) {

@@ -14,7 +14,7 @@ float shadow_open(
     const vec4 rows[3], vec2 uv, float depth, vec3 way, vec3 plane, float reach, float thickness, vec2 size
 ) {
     March ray = march_start(rows, uv, depth, march_out(way, plane), reach, false, size);
-    bool met = march(ray, ivec2(size), thickness, 512);
+    bool met = march(ray, ivec2(size), thickness, march_longest(ivec2(size)));
     return met ? 1.0 - ray.sure * clamp(3.0 - 3.0 * march_distance(ray) / reach, 0.0, 1.0) : 1.0;
 }
 

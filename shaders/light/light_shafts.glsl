@@ -17,7 +17,7 @@ float light_shafts_phase(float cosine, float ahead) {
 float light_shafts_open(const vec4 rows[3], vec2 uv, float depth, vec3 way, float reach, bool endless, float thickness) {
     March ray = march_start(rows, uv, depth, way, reach, endless, vec2(extent));
     ray.at = 0.0;  // the ray starts in the air: this pixel's surface may block it
-    return march(ray, extent, thickness, 256) && !ray.endless ? 1.0 - ray.sure : 1.0;
+    return march(ray, extent, thickness, march_longest(extent)) && !ray.endless ? 1.0 - ray.sure : 1.0;
 }
 
 // Single scattering of a light of intensity 1. `to` is the direction to a sun, or the position of a lamp.
