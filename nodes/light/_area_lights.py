@@ -19,8 +19,8 @@ COSINE_CELLS = 64
 @cache
 def read_cosines() -> tuple[float, ...]:
     """The table of linearly transformed cosines, 64 cells in a row. tests/data/fit_area_lights.py makes its file."""
-    halves = Path(__file__).with_name("area_lights.bin").read_bytes()
-    return unpack(f"<{len(halves) // 2}e", halves)
+    floats = Path(__file__).with_name("area_lights.bin").read_bytes()
+    return unpack(f"<{len(floats) // 4}f", floats)
 
 
 def pack_area_light(light: Light, gain: float) -> tuple[float, ...]:

@@ -134,7 +134,8 @@ _RADIUS_IN_CELLS = 8.0
 """The least number of cells along a radius. On the sample at 2160 lines, with a radius of 32 pixels, FLIP between cells
 and pixels is 0.007 on average; with half as many cells 0.018, with twice as many 0.002 in twice the time."""
 _SIDE_IN_CELLS = 16.0
-"""The least number of cells along the shorter side of a picture: a brush that is larger than the picture would else read
-cells that hold much of it."""
+"""The least number of cells along the shorter side of a picture: a brush that is larger than the picture would else
+read cells that hold much of it. In pictures of noise, colors are within 6e-4 of the formula on average; with less than
+half as many cells within 3e-3."""
 _NEAR = 8
 """How far around the center each pixel is read, where sectors overlap. Half of it: FLIP 0.008 as above."""

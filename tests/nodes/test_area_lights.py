@@ -102,19 +102,22 @@ def test_diffuse_light_is_the_integral_over_the_light(run, name):
 @pytest.mark.parametrize("roughness", [0.2, 0.45, 0.8])
 @pytest.mark.parametrize("name", LIGHTS)
 def test_reflections_are_the_integral_over_the_light(run, name, roughness):
-    """To 1e-2 of the light's radiance. Where the horizon cuts a light that is seen at a grazing angle, a transformed
+    """To 4e-3 of the light's radiance. Where the horizon cuts a light that is seen at a grazing angle, a transformed
     cosine is farther from GGX."""
     light = LIGHTS[name]
     _, specular = integrate(light, roughness, 0.04)
     found = render(run, (light,), "specular_light", roughness=roughness)
-    np.testing.assert_allclose(found, specular, atol=3e-2 if "sunken" in name else 7e-3)
+    np.testing.assert_allclose(found, specular, atol=2.2e-2 if "sunken" in name else 4e-3)
 
 
-def test_metals_reflect_all_light_in_their_color(run):
-    light = LIGHTS["window"]
-    _, specular = integrate(light, 0.45, 1.0)
-    found = render(run, (light,), "specular_light", roughness=0.45, metal=1.0)
-    np.testing.assert_allclose(found, specular, atol=6e-2)
+@pytest.mark.parametrize(("roughness", "most"), [(0.45, 3.5e-2), (0.8, 1.1e-2)])
+@pytest.mark.parametrize("name", LIGHTS)
+def test_metals_reflect_all_light_in_their_color(run, name, roughness, most):
+    """With the table of the paper's fit, errors were up to 0.12 and 0.04."""
+    light = LIGHTS[name]
+    _, specular = integrate(light, roughness, 1.0)
+    found = render(run, (light,), "specular_light", roughness=roughness, metal=1.0)
+    np.testing.assert_allclose(found, specular, atol=most)
 
 
 def test_light_adds_up_over_lights_of_all_kinds(run):
