@@ -18,7 +18,7 @@ from .evaluate_at_frame import animation_fault, find_expression_loops
 from .graph import Graph, Group, Item, find_setting, signature
 from .model import MAX_GROUP_DEPTH, Input, Port, Unknown
 from .named_items import find_item_faults
-from .names import INPUTS, OUTPUTS, did_you_mean, find_name_fault, name_fault, pick
+from .names import INPUTS, OUTPUTS, can_compare_all, did_you_mean, find_name_fault, name_fault, pick
 from .rules import Rule, Severity
 from .unknown_nodes import explain_unknown
 from .unmerged import CONFLICTS, find_unmerged
@@ -251,7 +251,7 @@ def _suggest_key(key: str, keys: Collection[str]) -> str:
 
     One of the same name does not help: it stands where it means nothing, such as the version of a node of code.
     """
-    hint = did_you_mean(key, [name for name in keys if name != key])
+    hint = did_you_mean(key, [name for name in keys if name != key]) if can_compare_all(keys) else ""
     return hint if "did you mean" in hint else ""
 
 
@@ -272,7 +272,9 @@ def _leftovers(graph: Graph) -> Iterator[Problem]:
     for path, keys in graph.extra.items():
         parts = path.split(".")
         item = graph.nodes.get(parts[1]) if len(parts) >= 3 and parts[0] == "nodes" else None
-        for key in keys if path else keys.keys() - {"$schema", CONFLICTS}:  # the first is for editors of text
+        for key in keys:
+            if not path and key in ("$schema", CONFLICTS):  # the first is for editors of text
+                continue
             if item is None:
                 hint = _suggest_key(key, _FILE_KEYS if not path else _NODE_KEYS if parts[0] == "nodes" else ())
             else:

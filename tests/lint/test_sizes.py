@@ -26,7 +26,7 @@ from halation.resources.picture import Picture
 from halation.resources.provider import PictureProbe
 from halation.resources.sandbox import UNRESTRICTED
 from halation.resources.suggestions import limit_suggestions, may_compare
-from large_graphs import GRAPHS, TEXTS, chain, coded, fan, missing, mistyped
+from large_graphs import GRAPHS, TEXTS, chain, change, coded, fan, missing, mistyped
 from msgspec.structs import replace
 from oiio_pictures import write_picture
 
@@ -209,6 +209,12 @@ def test_findings_that_are_left_out_are_not_kept(monkeypatch: pytest.MonkeyPatch
     report = check(json.dumps(mistyped(100)))
     assert len(kept) > 10 and max(kept) == 11
     assert len(report.findings) == 5 and len(report.findings) + report.omitted >= 101
+
+
+def test_of_many_unknown_keys_the_first_are_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(checking, "MAX_FINDINGS", 5)
+    report = check(json.dumps(change(chain(2), **{f"x{number}": 1 for number in range(40)}), indent=1))
+    assert [finding.problem.at for finding in report.findings] == [f"x{number}" for number in range(5)]
 
 
 def test_a_sentence_does_not_name_all_of_many_long_groups() -> None:
