@@ -157,7 +157,7 @@ class MediaProvider:
             import numpy as np
 
             pixels: Any = picture.pixels
-            array = np.array(pixels, np.float32) if isinstance(pixels, tuple) else pixels
+            array = np.asarray(pixels, np.float32) if isinstance(pixels, memoryview) else pixels
             return fit_channels(array, picture.kind, picture.width)
         from ..color.management import get_color_manager
         from ..media.convert import LayerRequest

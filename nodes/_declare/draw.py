@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Annotated, Any, ClassVar, Literal, Protocol
 
@@ -284,7 +284,7 @@ class Draw(Protocol):
         """Keep a picture for the next frame. For `Temporal` nodes."""
         ...
 
-    def table(self, numbers: tuple[float, ...], width: int) -> Drawn:
+    def table(self, numbers: Sequence[float], width: int) -> Drawn:
         """Numbers as a picture of four channels with `width` pixels in a row, for functions to read."""
         ...
 

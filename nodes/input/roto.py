@@ -2,12 +2,10 @@
 
 import math
 from collections.abc import Mapping
-from itertools import groupby, pairwise
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Literal
 
 from .._declare import (
     RGBA,
-    CubicCurve,
     Doc,
     Draw,
     Drawn,
@@ -20,62 +18,17 @@ from .._declare import (
     RotoShapeSet,
     Size,
     Slider,
-    Vector,
-    curve_point,
     list_curves,
     name_roto_shapes,
     roto_shapes_of,
     split_points,
 )
-from ._paths import BITS, BLOCK, SEGMENTS, PathFill, count_blocks, draw_coverage, draw_distance
-
-_FINE = 0.002
-"""How far in pixels a long segment may be from its curve: keeps coverage within 2e-3 of exact areas, as the polygon is
-on both sides of the curve, by two thirds of this at most."""
-
-_COARSE = 0.004
-"""How far a segment may be that is no longer than `_SHORT`: what is too much at its middle is missing at its ends."""
-
-_SHORT = 1.5
-"""Pixels: the length up to which a segment counts as short. Coverage is a mean over a pixel, where errors even out."""
-
-_LONG = 12.0
-"""The longest segment in pixels: a span then lies in few tiles."""
+from ._paths import PathFill, draw_fills
 
 _FARTHEST = 1e6
-"""Pixels from the corner of the picture: floats of 32 bits have 1/16 of a pixel there."""
-
-_MOST_SPANS = 64
-"""The most spans of one curve: 512 segments, as many as a quarter of a circle needs that is 3000 pixels high."""
-
-_LOOSE = 1.0 / 500.0
-"""How far a chord may be from its curve where it stands for the distance, as a part of the feather: 0.3 percent of
-coverage in the middle of the edge, where it changes most."""
-
-_LEAST_SLACK = 0.05
-"""The least such distance in pixels: a twentieth of a pixel is not seen in an edge of a few pixels."""
+"""Pixels from the corner of the picture: no picture is so large, and what lies beyond is the same within it."""
 
 _MODES = tuple(RotoMode)
-
-
-class _Path(NamedTuple):
-    """An outline in pixels: its curves with the feather of the points they start at, and the spans of each curve."""
-
-    outline: RotoShape
-    curves: tuple[CubicCurve, ...]
-    feathers: tuple[float, ...]
-    span_counts: tuple[int, ...]
-
-    @property
-    def feather(self) -> float:
-        """The width of its edge where that is widest."""
-        return self.outline.feather + max(self.feathers)
-
-    @property
-    def fill(self) -> PathFill:
-        """How it changes the mask below."""
-        outline = self.outline
-        return PathFill(sum(self.span_counts), _MODES.index(outline.mode), outline.opacity, outline.invert)
 
 
 class Roto(Filter):
@@ -149,109 +102,22 @@ class Roto(Filter):
 
 
 def _draw_mask(draw: Draw, matte: Drawn, outlines: list[RotoShape]) -> Drawn:
-    """The mask that outlines make of another one. Neighbors without a feather are drawn together."""
-    mask, paths = matte, [_trace_path(outline, draw.size) for outline in outlines]
-    for is_soft, run in groupby(paths, lambda path: path.feather > 0.0):
-        if is_soft:
-            for path in run:
-                mask = _draw_soft(draw, mask, path)
-        else:
-            mask = _draw_coverage(draw, mask, list(run))
-    return mask
+    """The mask that outlines make of another one."""
+    return draw_fills(draw, matte, [_trace(outline, draw.size) for outline in outlines]) if outlines else matte
 
 
-def _draw_soft(draw: Draw, mask: Drawn, path: _Path) -> Drawn:
-    """One outline with a feather: its exact coverage says which side of the edge a pixel is on."""
-    outline = path.outline
-    nothing = draw("path_nothing", size=(1, 1), result=Field())
-    cover = _draw_coverage(draw, nothing, [path._replace(outline=RotoShape())])
-    nearest = draw_distance(draw, _list_chords(path), 0.5 * path.feather)
-    return draw.point(
-        "roto_soft", mask=mask, cover=cover, nearest=nearest, result=Field(),
-        mode=_MODES.index(outline.mode), feather=outline.feather, opacity=outline.opacity, invert=outline.invert,
+def _trace(shape: RotoShape, size: Size) -> PathFill:
+    """A shape, moved as it says, in pixels."""
+    import numpy as np
+
+    from ._flattening import Outline
+
+    points = split_points(shape.points)
+    curves = np.array(list_curves(points)).reshape(-1, 4, 2)
+    matrix = np.array(shape.find_affine(size, shape.rotation)).reshape(2, 3)
+    curves = np.clip(curves @ matrix[:, :2].T + matrix[:, 2], -_FARTHEST, _FARTHEST)
+    feathers = np.array([max(point[6], 0.0) * size[1] for point in points])
+    return PathFill(
+        Outline.of([curves.reshape(-1, 8)], [feathers]),
+        _MODES.index(shape.mode), shape.opacity, shape.invert, shape.feather,
     )  # fmt: skip
-
-
-def _draw_coverage(draw: Draw, mask: Drawn, paths: list[_Path]) -> Drawn:
-    """The mask with the coverage of splines, whose points are found on the device."""
-    fills = [path.fill for path in paths]
-    spans = draw.table(_pack_spans(paths), BLOCK)
-    curves = draw.table(_pack_curves(paths), 3 * BLOCK)
-    size = (BLOCK * SEGMENTS, count_blocks(fills))
-    points = draw("roto_points", spans=spans, curves=curves, size=size, result=Vector(width=4))
-    return draw_coverage(draw, mask, fills, spans, points)
-
-
-def _trace_path(outline: RotoShape, size: Size) -> _Path:
-    """An outline, moved as it says, in pixels."""
-    points = split_points(outline.points)
-    a, b, c, d, e, f = outline.find_affine(size, outline.rotation)
-
-    def move(place: tuple[float, float]) -> tuple[float, float]:
-        x, y = place
-        return _limit(a * x + b * y + c), _limit(d * x + e * y + f)
-
-    moved = [(move(first), move(second), move(third)) for first, second, third, _ in list_curves(points)]
-    curves = tuple((*curve, after[0]) for curve, after in zip(moved, (*moved[1:], *moved[:1]), strict=True))
-    feathers = tuple(max(point[6], 0.0) * size[1] for point in points)
-    return _Path(outline, curves, feathers, tuple(map(_count_spans, curves)))
-
-
-def _limit(place: float) -> float:
-    """A place that is exact enough in 32 bits, and the same within pictures: no picture is so large."""
-    return min(max(place, -_FARTHEST), _FARTHEST)
-
-
-def _count_spans(curve: CubicCurve) -> int:
-    """How many spans a curve needs. Its bend bounds how far n segments are from it: 3 / 4 of the bend / n^2."""
-    length, bend = sum(math.dist(a, b) for a, b in pairwise(curve)), _measure_bend(curve)
-    segments = min(math.sqrt(0.75 * bend / _FINE), max(length / _SHORT, math.sqrt(0.75 * bend / _COARSE)))
-    return min(max(1, math.ceil(max(segments, length / _LONG) / SEGMENTS)), _MOST_SPANS)
-
-
-def _measure_bend(curve: CubicCurve) -> float:
-    """The largest second difference of the control points."""
-    (ax, ay), (bx, by), (cx, cy), (dx, dy) = curve
-    return max(math.hypot(ax - 2 * bx + cx, ay - 2 * by + cy), math.hypot(bx - 2 * cx + dx, by - 2 * cy + dy))
-
-
-def _pack_curves(paths: list[_Path]) -> tuple[float, ...]:
-    """Three texels for each curve: its four points, and the feather at its start and its end."""
-    numbers = list[float]()
-    for path in paths:
-        feathers = (*path.feathers, path.feathers[0])
-        for curve, ends in zip(path.curves, pairwise(feathers), strict=True):
-            for point in curve:
-                numbers += point
-            numbers += (*ends, 0.0, 0.0)
-    return tuple(numbers)
-
-
-def _pack_spans(paths: list[_Path]) -> tuple[float, ...]:
-    """A texel for each span: its curve, which part of it the span is, of how many, and the span that follows.
-
-    The spans of each outline start with a new channel.
-    """
-    numbers, curve = list[float](), 0
-    for path in paths:
-        base = span = len(numbers) // 4
-        for count in path.span_counts:
-            for part in range(count):
-                span += 1
-                numbers += (curve, part, count, span)
-            curve += 1
-        numbers[-1] = base
-        numbers += [0.0] * (4 * (path.fill.channel_count * BITS - path.fill.span_count))
-    return tuple(numbers)
-
-
-def _list_chords(path: _Path) -> tuple[float, ...]:
-    """Two texels for each chord: its ends, and the feather there."""
-    numbers, slack = list[float](), max(_LOOSE * path.feather, _LEAST_SLACK)
-    for curve, ends in zip(path.curves, pairwise((*path.feathers, path.feathers[0])), strict=True):
-        count = max(1, math.ceil(math.sqrt(0.75 * _measure_bend(curve) / slack)))
-        places = (curve[0], *(curve_point(curve, number / count) for number in range(1, count)), curve[3])
-        for number, (start, end) in enumerate(pairwise(places)):
-            feathers = (ends[0] + (ends[1] - ends[0]) * t / count for t in (number, number + 1))
-            numbers += (*start, *end, *feathers, 0.0, 0.0)
-    return tuple(numbers)

@@ -1,13 +1,13 @@
 """Text over a picture. The provider shapes it and gives outlines; `_paths.py` says how these become pixels."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from itertools import chain, pairwise
-from typing import Annotated, Literal, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 
 from .._declare import (
     RGBA,
-    Curve4,
     Dial,
     Doc,
     Draw,
@@ -28,37 +28,16 @@ from .._declare import (
     Typeface,
     TypesetText,
 )
-from ._paths import BITS, BLOCK, SEGMENTS, TILE, PathFill, count_blocks, draw_coverage, draw_distance
+from ._paths import PathFill, draw_fills
 
-Point = tuple[float, float]
+if TYPE_CHECKING:
+    from ._flattening import Array
+
 Box = tuple[float, float, float, float]
 """Left, top, right and bottom."""
 
-_FINE = 0.003
-"""How far in pixels a segment may be from its curve. The polygon has the area of the curve and is on both sides of it,
-by two thirds of this at most: coverage is exact to 1 / 255."""
-
-_COARSE = 0.006
-"""How far a segment may be that is no longer than `_SHORT`: what is too much at its middle is missing at its ends."""
-
-_SHORT = 1.5
-"""Pixels: the length up to which a segment counts as short. Coverage is a mean over a pixel, where errors even out."""
-
-_LONG = 64.0
-"""The longest segment in pixels: a slanted one then lies in few tiles that it does not cross."""
-
-_LOOSE = 0.02
-"""How far in pixels a point may lie from a chord that stands for it: what lies between is at most 0.06 away."""
-
 _BLUR_REACH = 4.0
 """Sigmas that a Gaussian of `draw.blur` reaches."""
-
-_MOST_SEGMENTS = 512
-"""The most segments of a curve: as many as a quarter of a circle needs that is 3000 pixels high."""
-
-_MOST_ROWS = 8192
-"""The highest picture that a table of tiles becomes: half of what every device can draw."""
-
 
 _MOST_LAYERS = 4
 """A letter, the next one that joins it, and a mark on each; what is beyond shares the last layer."""
@@ -71,15 +50,10 @@ _LARGER = tuple(RotoMode).index(RotoMode.MAX)
 
 
 class _Letter(NamedTuple):
-    """The polygons of a glyph in pixels, and the box around them."""
+    """The contours of a glyph in pixels, and the box around their control points."""
 
-    polygons: list[list[Point]]
+    contours: list[Array]
     box: Box
-
-    @property
-    def span_count(self) -> int:
-        """How many spans of segments it has."""
-        return sum(-(-len(polygon) // SEGMENTS) for polygon in self.polygons)
 
 
 class _Placement(NamedTuple):
@@ -216,19 +190,19 @@ class Text(Filter):
 
 
 def _trace_letters(typeset: TypesetText, to: _Placement, size: Size, margin: float) -> Iterator[_Letter]:
-    """All letters that can be seen. Each outline is flattened once."""
-    polygons = [[_flatten(contour, to.scale) for contour in outline] for outline in typeset.outlines]
+    """All letters that can be seen."""
+    import numpy as np
+
+    turn = np.array([[to.cos, to.sin], [-to.sin, to.cos]]) * to.scale
+    outlines = [[np.array(contour).reshape(-1, 2) @ turn for contour in outline] for outline in typeset.outlines]
     for place in typeset.places:
-        x, y = place.x * to.scale, place.y * to.scale
-        x, y = to.x + to.cos * x - to.sin * y, to.y + to.sin * x + to.cos * y
-        moved = [
-            [(x + to.cos * a - to.sin * b, y + to.sin * a + to.cos * b) for a, b in polygon]
-            for polygon in polygons[place.outline]
-        ]
-        across, down = zip(*chain.from_iterable(moved), strict=True)
-        box = min(across), min(down), max(across), max(down)
+        origin = np.array([to.x, to.y]) + np.array([place.x, place.y]) @ turn
+        contours = [(contour + origin).reshape(-1, 8) for contour in outlines[place.outline]]
+        points = np.concatenate(contours).reshape(-1, 2)
+        (left, top), (right, bottom) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+        box = left, top, right, bottom
         if _overlap(box, (-margin, -margin, size[0] + margin, size[1] + margin)):
-            yield _Letter(moved, box)
+            yield _Letter(contours, box)
 
 
 def _overlap(box: Box, other: Box) -> bool:
@@ -255,88 +229,21 @@ def _sort_layers(letters: Iterable[_Letter]) -> list[list[_Letter]]:
     return layers
 
 
-def _flatten(contour: tuple[Curve4, ...], scale: float) -> list[Point]:
-    """A closed polygon with the area of a contour: points within curves lie a little outside, as `roto_points` says."""
-    polygon = list[Point]()
-    for curve in contour:
-        ax, ay, bx, by, cx, cy, dx, dy = (part * scale for part in curve)
-        first = ax - 2.0 * bx + cx, ay - 2.0 * by + cy
-        second = bx - 2.0 * cx + dx, by - 2.0 * cy + dy
-        bend = max(math.hypot(*first), math.hypot(*second))
-        length = math.dist((ax, ay), (bx, by)) + math.dist((bx, by), (cx, cy)) + math.dist((cx, cy), (dx, dy))
-        fine = min(math.sqrt(0.75 * bend / _FINE), max(length / _SHORT, math.sqrt(0.75 * bend / _COARSE)))
-        count = min(max(1, math.ceil(fine), math.ceil(length / _LONG)), _MOST_SEGMENTS)
-        polygon.append((ax, ay))
-        push = 6.0 / (12.0 * count * count)
-        for number in range(1, count):
-            t = number / count
-            u = 1.0 - t
-            p, q, r, s = u * u * u, 3.0 * u * u * t, 3.0 * u * t * t, t * t * t
-            x = p * ax + q * bx + r * cx + s * dx - push * (u * first[0] + t * second[0])
-            y = p * ay + q * by + r * cy + s * dy - push * (u * first[1] + t * second[1])
-            polygon.append((x, y))
-    return polygon
-
-
 def _draw_letters(draw: Draw, letters: list[_Letter]) -> Drawn:
-    """The coverage of all letters. Many are drawn in several parts, so that no table is higher than it can be."""
+    """The coverage of all letters. Where letters overlap, the one that covers more of a pixel counts."""
     cover = draw("path_nothing", size=draw.size, result=Field(), overlap={})
-    most = BITS * 16 * max(1, _MOST_ROWS // -(-draw.size[1] // TILE))
-    parts, span_count = [list[_Letter]()], 0
-    for letter in letters:
-        span_count += letter.span_count
-        if parts[-1] and span_count > most:
-            parts, span_count = [*parts, []], letter.span_count
-        parts[-1].append(letter)
-    for part in parts:
-        cover = _cover_layers(draw, cover, _sort_layers(part)) if part else cover
-    return cover
+    if not letters:
+        return cover
+    return draw_fills(draw, cover, [_fill(layer) for layer in _sort_layers(letters)])
 
 
-def _cover_layers(draw: Draw, cover: Drawn, layers: list[list[_Letter]]) -> Drawn:
-    """The mask with layers of letters: where letters overlap, the one that covers more of a pixel counts."""
-    fills = [PathFill(sum(letter.span_count for letter in layer), _LARGER) for layer in layers]
-    spans, points = list[float](), list[float]()
-    for fill, layer in zip(fills, layers, strict=True):
-        for polygon in chain.from_iterable(letter.polygons for letter in layer):
-            base, count = len(spans) // 4, -(-len(polygon) // SEGMENTS)
-            for span in range(base + 1, base + count):
-                spans += (0.0, 0.0, 0.0, span)
-            spans += (0.0, 0.0, 0.0, base)
-            for x, y in polygon:
-                points += (x, y, 0.0, 0.0)
-            points += (*polygon[-1], 0.0, 0.0) * (count * SEGMENTS - len(polygon))
-        free = fill.channel_count * BITS - fill.span_count
-        spans += (0.0,) * (4 * free)
-        points += (0.0,) * (4 * SEGMENTS * free)
-    free = count_blocks(fills) * BLOCK - len(spans) // 4
-    spans += (0.0,) * (4 * free)
-    points += (0.0,) * (4 * SEGMENTS * free)
-    tables = draw.table(tuple(spans), BLOCK), draw.table(tuple(points), BLOCK * SEGMENTS)
-    return draw_coverage(draw, cover, fills, *tables)
+def _fill(letters: Iterable[_Letter]) -> PathFill:
+    from ._flattening import Outline
 
-
-def _thin_out(polygon: list[Point]) -> list[Point]:
-    """The points of a polygon without those that lie almost on the line to the next one that stays."""
-    corners = [polygon[0]]
-    for before, point, after in zip(polygon, polygon[1:], (*polygon[2:], polygon[0]), strict=False):
-        (x, y), (a, b) = corners[-1], after
-        across, down = a - x, b - y
-        away = abs(across * (point[1] - y) - down * (point[0] - x))
-        near = math.dist(before, corners[-1]) + math.dist(point, before)
-        if away > _LOOSE * math.hypot(across, down) or near > _LONG:
-            corners.append(point)
-    return corners
+    outline = Outline.of([contour for letter in letters for contour in letter.contours])
+    return PathFill(outline, _LARGER)
 
 
 def _draw_stroke(draw: Draw, cover: Drawn, letters: list[_Letter], width: float) -> Drawn:
     """The letters grown by a width, as a function of the distance to their outlines."""
-    chords = list[float]()
-    for polygon in chain.from_iterable(letter.polygons for letter in letters):
-        corners = _thin_out(polygon)
-        for start, end in pairwise((*corners, corners[0])):
-            chords += (*start, *end, 0.0, 0.0, 0.0, 0.0)
-    if not chords:
-        return cover
-    nearest = draw_distance(draw, tuple(chords), width + 1.0)
-    return draw.point("text_stroke", cover=cover, nearest=nearest, result=Field(), width=width)
+    return draw_fills(draw, cover, [_fill(letters)._replace(growth=width)]) if letters else cover

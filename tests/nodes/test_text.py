@@ -109,13 +109,6 @@ def test_shadow_is_the_text_moved_and_blurred(run):
     np.testing.assert_allclose(run(node, size=(96, 64))[..., 3], expected, atol=2e-3)
 
 
-def test_a_long_text_is_drawn_in_parts(run, monkeypatch):
-    node = Text(text="many letters " * 30, size=0.06, tracking=0.4, wrap_width=2.0)
-    whole = matte(run, node, (256, 128))
-    monkeypatch.setattr("halation.nodes.input.text._MOST_ROWS", 1)
-    np.testing.assert_allclose(matte(run, node, (256, 128)), whole, atol=1e-5)
-
-
 def test_weights(run):
     covers = [matte(run, Text(text="nnn", size=0.5, weight=weight), (128, 64)).sum() for weight in (200, 400, 700, 900)]
     assert covers == sorted(covers) and covers[2] > covers[1] * 1.3

@@ -311,7 +311,7 @@ class Recorder:
         assert isinstance(pixels, DrawnPicture)
         self.remembered[name] = pixels.ref
 
-    def table(self, numbers: tuple[float, ...], width: int) -> Drawn:
+    def table(self, numbers: Sequence[float], width: int) -> Drawn:
         return self._add_op(make_table(self._owner, numbers, width))
 
     def host(self, program: HostProgram, /, result: Socket | None = None, **pictures: Pixels) -> Drawn:

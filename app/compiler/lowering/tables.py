@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from array import array
+from collections.abc import Sequence
 from hashlib import blake2b
 
 from halation.nodes import Kind
@@ -11,13 +13,16 @@ from ...resources.picture import Picture
 from ..ir import PictureShape, Read
 
 
-def make_table(owner: str, numbers: tuple[float, ...], width: int) -> Read:
-    """Numbers as a picture of four channels with `width` pixels in a row; the last row is filled with zeros."""
+def make_table(owner: str, numbers: Sequence[float], width: int) -> Read:
+    """Numbers as a picture of four channels with `width` pixels in a row; the last row is filled with zeros.
+
+    Numbers in an array of floats in 32 bits are handed on as they are, so that millions of them take no time.
+    """
     rows = max(1, -(-len(numbers) // (4 * width)))
-    filled = numbers + (0.0,) * (4 * width * rows - len(numbers))
-    table = tuple(
-        tuple(filled[at : at + 4] for at in range(row, row + 4 * width, 4)) for row in range(0, len(filled), 4 * width)
-    )
-    fingerprint = blake2b(array("d", filled).tobytes() + str(width).encode()).hexdigest()
-    picture = Picture("numbers", "", Kind.VECTOR, 4, in_memory=True, pixels=table)
+    shape = rows, width, 4
+    filled = numbers[:] if isinstance(numbers, array) else array("f", numbers)
+    filled.frombytes(bytes(filled.itemsize * (math.prod(shape) - len(filled))))
+    fingerprint = blake2b(filled.tobytes() + str(width).encode()).hexdigest()
+    pixels = memoryview(filled).cast("B").cast("f", shape)
+    picture = Picture("numbers", "", Kind.VECTOR, 4, in_memory=True, pixels=pixels)
     return Read((PictureShape((width, rows), 4, data=True),), owner, picture, fingerprint, half=False)

@@ -1,0 +1,83 @@
+"""The chords that can be nearest to a pixel of a tile: what the distance to an outline is found from."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ._cells import TILE, Grid
+from ._flattening import Array
+
+_ROUNDING = 0.01
+"""Pixels: places in 32 bits are exact to this up to 131,072 pixels."""
+
+
+class Candidates(NamedTuple):
+    """Numbers of chords by tile, those of a tile after each other."""
+
+    chords: Array
+    starts: Array
+    """The place of the first one of each tile, by row and column; then how many there are."""
+    counts: Array
+
+
+def find_candidates(ends: Array, reach: float, grid: Grid) -> Candidates:
+    """The chords that can be nearest to a pixel of a tile, within reach.
+
+    Squares are cut into four again and again. The chords of a square are those that are no farther from its middle than
+    the nearest one and twice the way to its corners.
+    """
+    side = TILE
+    while side < TILE * max(grid.across, grid.down):
+        side *= 2
+    ends = ends + grid.corner
+    squares, chord, sizes = np.zeros((1, 2), np.intp), np.arange(len(ends)), np.array([len(ends)])
+    while True:
+        squares, chord, sizes = _keep_near(ends, squares, chord, sizes, side, reach)
+        if side == TILE or not len(chord):
+            break
+        side //= 2
+        squares, chord, sizes = _cut_squares(squares, chord, sizes, (grid.across * TILE, grid.down * TILE), side)
+    starts, counts = np.zeros((grid.down, grid.across), np.intp), np.zeros((grid.down, grid.across), np.intp)
+    if len(chord):
+        starts[squares[:, 1], squares[:, 0]] = np.cumsum(sizes) - sizes
+        counts[squares[:, 1], squares[:, 0]] = sizes
+    return Candidates(chord, starts, counts)
+
+
+def _cut_squares(
+    squares: Array, chord: Array, sizes: Array, extent: tuple[int, int], side: int
+) -> tuple[Array, Array, Array]:
+    """Squares of half the side, each with the chords of the whole one, as far as they lie in the grid."""
+    chords, kept, counts = list[Array](), list[Array](), list[Array]()
+    for corner in ((0, 0), (1, 0), (0, 1), (1, 1)):
+        quarter = 2 * squares + corner
+        is_inside = (quarter * side < extent).all(axis=1)
+        kept.append(quarter[is_inside])
+        counts.append(sizes[is_inside])
+        chords.append(chord[np.repeat(is_inside, sizes)])
+    return np.concatenate(kept), np.concatenate(chords), np.concatenate(counts)
+
+
+def _keep_near(
+    ends: Array, squares: Array, chord: Array, sizes: Array, side: int, reach: float
+) -> tuple[Array, Array, Array]:
+    """The chords that can be nearest within each square; squares that no chord reaches are left out."""
+    if not len(chord):
+        return squares[:0], chord, sizes[:0]
+    starts = np.cumsum(sizes) - sizes
+    away = measure_distance(ends[chord], np.repeat((squares + 0.5) * side, sizes, axis=0))
+    radius = side * 0.5**0.5 + _ROUNDING
+    limit = np.minimum(np.minimum.reduceat(away, starts) + 2.0 * radius, reach + radius)
+    is_near = away <= np.repeat(limit, sizes)
+    sizes = np.add.reduceat(is_near, starts, dtype=np.intp)
+    return squares[sizes > 0], chord[is_near], sizes[sizes > 0]
+
+
+def measure_distance(ends: Array, places: Array) -> Array:
+    """The distance of each place to its chord."""
+    start, edge = ends[:, :2], ends[:, 2:] - ends[:, :2]
+    to = places - start
+    length = np.maximum((edge * edge).sum(axis=1), 1e-12)
+    t = np.clip((to * edge).sum(axis=1) / length, 0.0, 1.0)
+    away = to - t[:, None] * edge
+    return np.hypot(away[:, 0], away[:, 1])

@@ -1,0 +1,163 @@
+"""The tables that `lib/paths.glsl` reads: what each tile of a picture needs of outlines.
+
+A tile is a texel of `tiles`: the number of its first entry and how many it has, one for each outline that matters
+there, then what the mask below is multiplied by and what is added, if it has none. An entry has ten texels: the number
+of its outline, the first texel of the chords near the tile and how many there are; the tile; then for each of four
+strips of four rows the first segment and how many, and what lies left of the strip in each row.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ._cells import STRIP, TILE, Cells, Grid, sort_into_cells
+from ._flattening import Array, flatten, list_chords
+from ._nearest import Candidates, find_candidates
+from ._paths import ENTRY, PathFill
+
+_INTERSECT, _MIN = 2, 4
+_STRIPS = TILE // STRIP
+
+
+class _Prepared(NamedTuple):
+    """An outline in tables: its cells, the chords near it, and by tile whether a pixel has to look at them."""
+
+    fill: PathFill
+    cells: Cells
+    chords: Array
+    """Two rows for each: both ends, then the feathers there and nothing."""
+    near: Candidates
+    matters: Array
+    level: Array
+    """By tile: its coverage where it does not matter."""
+
+
+def build_tables(fills: Sequence[PathFill], size: tuple[int, int], beyond: int) -> Mapping[str, Array]:
+    """The tables of outlines by their names, as rows of four numbers in 32 bits."""
+    across, down = (-(-side // TILE) + 2 * beyond for side in size)
+    grid = Grid(across, down, beyond)
+    prepared = [_prepare(fill, grid) for fill in fills]
+    scale, offset, is_listed = _combine_levels(prepared, grid)
+    tiles = np.zeros((down, across, 4))
+    tiles[..., 2], tiles[..., 3] = scale, offset
+    entries = _list_entries(prepared, is_listed, tiles)
+    shapes = [
+        ((fill.mode, fill.opacity, fill.invert, fill.feather), (len(item.chords) > 0, fill.growth, 0.0, 0.0))
+        for item in prepared
+        for fill in [item.fill]
+    ]
+    tables = {
+        "shapes": np.array(shapes),
+        "tiles": tiles,
+        "entries": entries,
+        "segments": np.concatenate([np.zeros((0, 4)), *(item.cells.parts for item in prepared)]),
+        "chords": np.concatenate([np.zeros((0, 4)), *(item.chords for item in prepared)]),
+        "nearest": _pack_candidates(prepared),
+    }
+    return {name: np.ascontiguousarray(table, np.float32).reshape(-1, 4) for name, table in tables.items()}
+
+
+def _prepare(fill: PathFill, grid: Grid) -> _Prepared:
+    cells = sort_into_cells(flatten(fill.outline).ends, grid)
+    feather = fill.feather + fill.outline.feathers.max(initial=0.0)
+    level = np.minimum(np.abs(cells.backdrops[::_STRIPS, :, 0]), 1.0)
+    if feather <= 0.0 and fill.growth <= 0.0:
+        nothing = np.zeros(cells.are_crossed.shape, np.intp)
+        near = Candidates(np.zeros(0, np.intp), nothing, nothing)
+        return _Prepared(fill, cells, np.zeros((0, 4)), near, cells.are_crossed, level)
+    chords = list_chords(fill.outline, feather)
+    near = find_candidates(chords.ends, 0.5 * feather + fill.growth + 1.0, grid)
+    pairs = np.stack([chords.ends, np.pad(chords.feathers, ((0, 0), (0, 2)))], axis=1).reshape(-1, 4)
+    return _Prepared(fill, cells, pairs, near, near.counts > 0, level)
+
+
+def _combine_levels(prepared: Sequence[_Prepared], grid: Grid) -> tuple[Array, Array, list[Array]]:
+    """What the outlines make of a mask in tiles where none matters, and the tiles in which each has an entry.
+
+    In a tile that one matters in, all that change the mask have one; so have those that do more than scale and add.
+    """
+    ends = np.zeros((2, grid.down, grid.across))  # what becomes of a mask of 0 and of 1
+    ends[1] = 1.0
+    is_mixed = np.zeros((grid.down, grid.across), bool)
+    for item in prepared:
+        ends = _combine(ends, item.level, item.fill)
+        is_mixed |= item.matters | ~_is_linear(item.level, item.fill)
+    is_listed = [
+        is_mixed & (item.matters | ~_is_idle(1.0 - item.level if item.fill.invert else item.level, item.fill))
+        for item in prepared
+    ]
+    return ends[1] - ends[0], ends[0], is_listed
+
+
+def _combine(below: Array, cover: Array, fill: PathFill) -> Array:
+    """A mask with one more outline, as `path_combine` has it."""
+    cover = 1.0 - cover if fill.invert else cover
+    amount, kept = cover * fill.opacity, 1.0 - fill.opacity * (1.0 - cover)
+    match fill.mode:
+        case 0:
+            return below + amount * (1.0 - below)
+        case 1:
+            return below * (1.0 - amount)
+        case 2:
+            return below * kept
+        case 3:
+            return np.maximum(below, amount)
+        case 4:
+            return np.minimum(below, kept)
+        case 5:
+            return np.abs(below - amount)
+        case _:
+            return np.minimum(below + amount, 1.0)
+
+
+def _is_linear(cover: Array, fill: PathFill) -> Array:
+    """True where a mask of 0..1 becomes itself times a number, plus another one."""
+    if fill.mode <= _INTERSECT or fill.opacity == 0.0:
+        return np.ones(cover.shape, bool)
+    return (fill.opacity == 1.0) & ((cover == 0.0) | (cover == 1.0))
+
+
+def _is_idle(cover: Array, fill: PathFill) -> Array:
+    """True where an outline leaves all masks of 0..1 as they are."""
+    return cover == (1.0 if fill.mode in (_INTERSECT, _MIN) else 0.0)
+
+
+def _list_entries(prepared: Sequence[_Prepared], is_listed: Sequence[Array], tiles: Array) -> Array:
+    """The entries of all tiles; `tiles` gets the first one of each tile, and how many there are."""
+    counts = sum((listed.astype(np.intp) for listed in is_listed), np.zeros(tiles.shape[:2], np.intp))
+    first = np.cumsum(counts).reshape(counts.shape) - counts
+    tiles[..., 0], tiles[..., 1] = first, counts
+    entries, place = np.zeros((int(counts.sum()), ENTRY, 4)), np.zeros_like(counts)
+    segment = texel = 0
+    for number, (item, listed) in enumerate(zip(prepared, is_listed, strict=True)):
+        row, column = np.nonzero(listed)
+        lengths = -(-item.near.counts // 4)
+        texels = texel + np.cumsum(lengths).reshape(lengths.shape) - lengths
+        at = first[row, column] + place[row, column]
+        entries[at, 0, 0] = number
+        entries[at, 0, 1], entries[at, 0, 2] = texels[row, column], lengths[row, column]
+        entries[at, 1, 0], entries[at, 1, 1] = column, row
+        for strip in range(_STRIPS):
+            cell = _STRIPS * row + strip, column
+            entries[at, 2 + 2 * strip, 0] = segment + item.cells.starts[cell]
+            entries[at, 2 + 2 * strip, 1] = item.cells.counts[cell]
+            entries[at, 3 + 2 * strip] = item.cells.backdrops[cell]
+        place[row, column] += 1
+        segment, texel = segment + len(item.cells.parts), texel + int(lengths.sum())
+    return entries
+
+
+def _pack_candidates(prepared: Sequence[_Prepared]) -> Array:
+    """The numbers of chords near each tile of each outline, four to a texel; the last one is repeated."""
+    packed, first = [np.zeros((0, 4))], 0
+    for item in prepared:
+        counts = item.near.counts.reshape(-1)
+        starts = item.near.starts.reshape(-1)
+        lengths = -(-counts // 4)
+        tile = np.repeat(np.arange(len(counts)), lengths)
+        number = np.arange(len(tile)) - np.repeat(np.cumsum(lengths) - lengths, lengths)
+        places = np.minimum(4 * number[:, None] + np.arange(4), counts[tile][:, None] - 1)
+        packed.append(first + item.near.chords[starts[tile][:, None] + places] if len(tile) else np.zeros((0, 4)))
+        first += len(item.chords) // 2
+    return np.concatenate(packed)
