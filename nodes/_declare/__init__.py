@@ -68,6 +68,7 @@ from .lights import (
 from .masking import INVERT_MASK, MASK, MASKED, MIX
 from .mattes import float_bits, format_names, matte_of, murmur3, pick_ids, pick_names, toggle_name
 from .node import Filter, Node, Pointwise, Reader, Source, Temporal
+from .outlines import OutlineFill, OutlinePlace
 from .paint_strokes import (
     MAX_STROKES,
     PAINT_STROKES,
@@ -222,6 +223,8 @@ __all__ = [
     "Number",
     "OfLayer",
     "OfSpace",
+    "OutlineFill",
+    "OutlinePlace",
     "OutputSocket",
     "Overlap",
     "PaintStroke",

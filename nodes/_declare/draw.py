@@ -11,6 +11,7 @@ from msgspec import Struct
 from .camera import CameraModel
 from .host import HostProgram
 from .lettering import TextBlock, TypesetText
+from .outlines import OutlineFill
 from .recolor import ColorChange
 from .render import Render
 from .scene import Motion, Scene
@@ -286,6 +287,13 @@ class Draw(Protocol):
 
     def table(self, numbers: Sequence[float], width: int) -> Drawn:
         """Numbers as a picture of four channels with `width` pixels in a row, for functions to read."""
+        ...
+
+    def fill(self, mask: Pixels, fills: Sequence[OutlineFill]) -> Drawn:
+        """A mask of one channel, changed by outlines one after the other: by how much of each pixel they cover.
+
+        The node's GLSL file includes lib/paths.glsl.
+        """
         ...
 
     def host(self, program: HostProgram, /, result: Socket | None = None, **pictures: Pixels) -> Drawn:

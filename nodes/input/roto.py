@@ -1,4 +1,4 @@
-"""Rotoscope: named splines as one mask. `_paths.py` says how they become pixels."""
+"""Rotoscope: named splines as one mask."""
 
 import math
 from collections.abc import Mapping
@@ -12,8 +12,9 @@ from .._declare import (
     Field,
     Filter,
     Image,
+    OutlineFill,
+    OutlinePlace,
     OutputSocket,
-    RotoMode,
     RotoShape,
     RotoShapeSet,
     Size,
@@ -23,12 +24,6 @@ from .._declare import (
     roto_shapes_of,
     split_points,
 )
-from ._paths import PathFill, draw_fills
-
-_FARTHEST = 1e6
-"""Pixels from the corner of the picture: no picture is so large, and what lies beyond is the same within it."""
-
-_MODES = tuple(RotoMode)
 
 
 class Roto(Filter):
@@ -103,21 +98,15 @@ class Roto(Filter):
 
 def _draw_mask(draw: Draw, matte: Drawn, outlines: list[RotoShape]) -> Drawn:
     """The mask that outlines make of another one."""
-    return draw_fills(draw, matte, [_trace(outline, draw.size) for outline in outlines]) if outlines else matte
+    return draw.fill(matte, [_trace(outline, draw.size) for outline in outlines]) if outlines else matte
 
 
-def _trace(shape: RotoShape, size: Size) -> PathFill:
+def _trace(shape: RotoShape, size: Size) -> OutlineFill:
     """A shape, moved as it says, in pixels."""
-    import numpy as np
-
-    from ._flattening import Outline
-
     points = split_points(shape.points)
-    curves = np.array(list_curves(points)).reshape(-1, 4, 2)
-    matrix = np.array(shape.find_affine(size, shape.rotation)).reshape(2, 3)
-    curves = np.clip(curves @ matrix[:, :2].T + matrix[:, 2], -_FARTHEST, _FARTHEST)
-    feathers = np.array([max(point[6], 0.0) * size[1] for point in points])
-    return PathFill(
-        Outline.of([curves.reshape(-1, 8)], [feathers]),
-        _MODES.index(shape.mode), shape.opacity, shape.invert, shape.feather,
+    contour = tuple((*a, *b, *c, *d) for a, b, c, d in list_curves(points))
+    return OutlineFill(
+        ((contour,),), (OutlinePlace(0, shape.find_affine(size, shape.rotation)),),
+        shape.mode, shape.opacity, shape.invert, shape.feather,
+        tuple(max(point[6], 0.0) * size[1] for point in points),
     )  # fmt: skip

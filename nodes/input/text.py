@@ -1,13 +1,15 @@
-"""Text over a picture. The provider shapes it and gives outlines; `_paths.py` says how these become pixels."""
+"""Text over a picture. The provider shapes it and gives outlines."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
+from itertools import chain
+from typing import Annotated, Literal, NamedTuple
 
 from .._declare import (
     RGBA,
+    Contour,
     Dial,
     Doc,
     Draw,
@@ -16,10 +18,11 @@ from .._declare import (
     Filter,
     FontPath,
     Image,
+    OutlineFill,
+    OutlinePlace,
     OutputSocket,
     Position,
     Prose,
-    RotoMode,
     Size,
     Slider,
     TextAlign,
@@ -28,10 +31,6 @@ from .._declare import (
     Typeface,
     TypesetText,
 )
-from ._paths import PathFill, draw_fills
-
-if TYPE_CHECKING:
-    from ._flattening import Array
 
 Box = tuple[float, float, float, float]
 """Left, top, right and bottom."""
@@ -45,14 +44,11 @@ _MOST_LAYERS = 4
 _NEIGHBORS = 64
 """How many letters of a layer can be near the next one: more than in a line and a half of a long text."""
 
-_LARGER = tuple(RotoMode).index(RotoMode.MAX)
-"""The mode of a fill that keeps the larger coverage."""
-
 
 class _Letter(NamedTuple):
-    """The contours of a glyph in pixels, and the box around their control points."""
+    """Where a glyph is, and the box around its control points in pixels."""
 
-    contours: list[Array]
+    place: OutlinePlace
     box: Box
 
 
@@ -161,8 +157,10 @@ class Text(Filter):
         typeset = draw.typeset(block)
         margin = self._margin + draw.overscan
         letters = list(_trace_letters(typeset, self._place(typeset, draw.size), draw.size, margin))
-        cover = _draw_letters(draw, letters)
-        body = _draw_stroke(draw, cover, letters, self.outline_width) if self.outline_width > 0.0 else cover
+        cover = _draw_letters(draw, typeset, letters)
+        body = cover
+        if self.outline_width > 0.0 and letters:
+            body = draw.fill(cover, [_fill(typeset, letters, self.outline_width)])
         picture = draw.point("text_below", self.image)
         if any(self.shadow_color):
             shadow = draw.place(body, (1.0, 0.0, -self.shadow_offset[0], 0.0, 1.0, -self.shadow_offset[1]), "triangle")
@@ -191,18 +189,24 @@ class Text(Filter):
 
 def _trace_letters(typeset: TypesetText, to: _Placement, size: Size, margin: float) -> Iterator[_Letter]:
     """All letters that can be seen."""
-    import numpy as np
-
-    turn = np.array([[to.cos, to.sin], [-to.sin, to.cos]]) * to.scale
-    outlines = [[np.array(contour).reshape(-1, 2) @ turn for contour in outline] for outline in typeset.outlines]
+    a, b = to.scale * to.cos, to.scale * to.sin
+    boxes = [_find_box(outline, a, b) for outline in typeset.outlines]
     for place in typeset.places:
-        origin = np.array([to.x, to.y]) + np.array([place.x, place.y]) @ turn
-        contours = [(contour + origin).reshape(-1, 8) for contour in outlines[place.outline]]
-        points = np.concatenate(contours).reshape(-1, 2)
-        (left, top), (right, bottom) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
-        box = left, top, right, bottom
+        x, y = to.x + a * place.x - b * place.y, to.y + b * place.x + a * place.y
+        left, top, right, bottom = boxes[place.outline]
+        box = left + x, top + y, right + x, bottom + y
         if _overlap(box, (-margin, -margin, size[0] + margin, size[1] + margin)):
-            yield _Letter(contours, box)
+            yield _Letter(OutlinePlace(place.outline, (a, -b, x, b, a, y)), box)
+
+
+def _find_box(outline: tuple[Contour, ...], a: float, b: float) -> Box:
+    """The box around a glyph that is turned and scaled, where its origin is 0; nowhere, if there is nothing to draw."""
+    curves = list(chain.from_iterable(outline))
+    if not curves:
+        return math.inf, math.inf, -math.inf, -math.inf
+    points = [(curve[at], curve[at + 1]) for curve in curves for at in range(0, 8, 2)]
+    across, down = [a * x - b * y for x, y in points], [b * x + a * y for x, y in points]
+    return min(across), min(down), max(across), max(down)
 
 
 def _overlap(box: Box, other: Box) -> bool:
@@ -229,21 +233,12 @@ def _sort_layers(letters: Iterable[_Letter]) -> list[list[_Letter]]:
     return layers
 
 
-def _draw_letters(draw: Draw, letters: list[_Letter]) -> Drawn:
+def _draw_letters(draw: Draw, typeset: TypesetText, letters: list[_Letter]) -> Drawn:
     """The coverage of all letters. Where letters overlap, the one that covers more of a pixel counts."""
     cover = draw("path_nothing", size=draw.size, result=Field(), overlap={})
-    if not letters:
-        return cover
-    return draw_fills(draw, cover, [_fill(layer) for layer in _sort_layers(letters)])
+    return draw.fill(cover, [_fill(typeset, layer) for layer in _sort_layers(letters)]) if letters else cover
 
 
-def _fill(letters: Iterable[_Letter]) -> PathFill:
-    from ._flattening import Outline
-
-    outline = Outline.of([contour for letter in letters for contour in letter.contours])
-    return PathFill(outline, _LARGER)
-
-
-def _draw_stroke(draw: Draw, cover: Drawn, letters: list[_Letter], width: float) -> Drawn:
-    """The letters grown by a width, as a function of the distance to their outlines."""
-    return draw_fills(draw, cover, [_fill(letters)._replace(growth=width)]) if letters else cover
+def _fill(typeset: TypesetText, letters: Iterable[_Letter], growth: float = 0.0) -> OutlineFill:
+    """Letters as one outline; a mask keeps what is more."""
+    return OutlineFill(typeset.outlines, tuple(letter.place for letter in letters), "max", growth=growth)

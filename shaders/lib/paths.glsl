@@ -1,4 +1,4 @@
-// Closed outlines as coverage. Tables say what matters in each tile: `_path_tables.py` makes them.
+// Closed outlines as coverage. Tables say what matters in each tile: `outline_tables.py` makes them.
 //
 // Coverage is the area right of each segment, with its sign, summed over the segments of a row: exact for polygons, as
 // in Levien's font-rs. What lies left of a tile is a number for each row. Soft edges are a function of the distance to
@@ -91,13 +91,14 @@ vec4 path_covers(int bits, int across, int count, int beyond) {
     vec4 cover = min(abs(sum), 1.0);
     if (entry.z == 0.0) return cover;
     vec2 tile = entries_at(path_cell(at + 1, bits)).xy - float(beyond);
-    vec4 facts = shapes_at(path_cell(2 * int(entry.x), bits)), more = shapes_at(path_cell(2 * int(entry.x) + 1, bits));
+    vec4 facts = shapes_at(path_cell(2 * int(entry.x), bits));
+    float growth = shapes_at(path_cell(2 * int(entry.x) + 1, bits)).x;
     vec4 distances, feathers;
     path_nearest(
         int(entry.y), int(entry.z), tile * float(PATH_TILE) + vec2(within) + 0.5, bits, distances, feathers
     );
-    vec4 inside = mix(-distances, distances, greaterThanEqual(cover, vec4(0.5))) + more.y;
-    if (more.y > 0.0) return max(cover, clamp(inside + 0.5, 0.0, 1.0));
+    vec4 inside = mix(-distances, distances, greaterThanEqual(cover, vec4(0.5)))+ growth;
+    if (growth > 0.0) return max(cover, clamp(inside + 0.5, 0.0, 1.0));
     for (int n = 0; n < 4; ++n) cover[n] = path_soften(cover[n], inside[n], facts.w + feathers[n]);
     return cover;
 }

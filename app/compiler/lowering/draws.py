@@ -70,11 +70,12 @@ from . import constants, formulas, fourier, gaussian, padding, transforms
 from .blurs import BlurBuilder
 from .node_code import check_options
 from .node_inputs import DrawnPicture, NodeInputs, NodeResources
+from .outline_drawing import OutlineDraw
 from .rasters import add_raster
 from .tables import make_table
 
 
-class Recorder:
+class Recorder(OutlineDraw):
     """Implements `Draw` for one node with its inputs."""
 
     def __init__(

@@ -10,42 +10,46 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from halation.nodes import OutlineFill
 
-from ._cells import STRIP, TILE, Cells, Grid, sort_into_cells
-from ._flattening import Array, flatten, list_chords
-from ._nearest import Candidates, find_candidates
-from ._paths import ENTRY, PathFill
+from .outline_cells import STRIP, TILE, SegmentCells, TileGrid, sort_into_cells
+from .outline_chords import NearChords, find_candidates
+from .outline_curves import Array, PlacedCurves, flatten, list_chords
 
-_INTERSECT, _MIN = 2, 4
+ENTRY = 10
+"""Texels of an entry: two, and two for each of four strips."""
+
+_MODES = "union", "subtract", "intersect", "max", "min", "difference", "plus"
+"""In the order of the numbers that `path_combine` knows them by."""
+_LINEAR = _MODES[:3]
+_KEEPING = "intersect", "min"
 _STRIPS = TILE // STRIP
 
 
-class _Prepared(NamedTuple):
+class _SortedOutline(NamedTuple):
     """An outline in tables: its cells, the chords near it, and by tile whether a pixel has to look at them."""
 
-    fill: PathFill
-    cells: Cells
+    fill: OutlineFill
+    cells: SegmentCells
     chords: Array
     """Two rows for each: both ends, then the feathers there and nothing."""
-    near: Candidates
+    near: NearChords
     matters: Array
     level: Array
     """By tile: its coverage where it does not matter."""
 
 
-def build_tables(fills: Sequence[PathFill], size: tuple[int, int], beyond: int) -> Mapping[str, Array]:
+def build_tables(fills: Sequence[OutlineFill], size: tuple[int, int], beyond: int) -> Mapping[str, Array]:
     """The tables of outlines by their names, as rows of four numbers in 32 bits."""
     across, down = (-(-side // TILE) + 2 * beyond for side in size)
-    grid = Grid(across, down, beyond)
+    grid = TileGrid(across, down, beyond)
     prepared = [_prepare(fill, grid) for fill in fills]
     scale, offset, is_listed = _combine_levels(prepared, grid)
     tiles = np.zeros((down, across, 4))
     tiles[..., 2], tiles[..., 3] = scale, offset
     entries = _list_entries(prepared, is_listed, tiles)
     shapes = [
-        ((fill.mode, fill.opacity, fill.invert, fill.feather), (len(item.chords) > 0, fill.growth, 0.0, 0.0))
-        for item in prepared
-        for fill in [item.fill]
+        (_MODES.index(fill.mode), fill.opacity, fill.invert, fill.feather, fill.growth, 0.0, 0.0, 0.0) for fill in fills
     ]
     tables = {
         "shapes": np.array(shapes),
@@ -58,21 +62,22 @@ def build_tables(fills: Sequence[PathFill], size: tuple[int, int], beyond: int) 
     return {name: np.ascontiguousarray(table, np.float32).reshape(-1, 4) for name, table in tables.items()}
 
 
-def _prepare(fill: PathFill, grid: Grid) -> _Prepared:
-    cells = sort_into_cells(flatten(fill.outline).ends, grid)
-    feather = fill.feather + fill.outline.feathers.max(initial=0.0)
+def _prepare(fill: OutlineFill, grid: TileGrid) -> _SortedOutline:
+    curves = PlacedCurves.of(fill)
+    cells = sort_into_cells(flatten(curves).ends, grid)
+    feather = fill.feather + curves.feathers.max(initial=0.0)
     level = np.minimum(np.abs(cells.backdrops[::_STRIPS, :, 0]), 1.0)
     if feather <= 0.0 and fill.growth <= 0.0:
         nothing = np.zeros(cells.are_crossed.shape, np.intp)
-        near = Candidates(np.zeros(0, np.intp), nothing, nothing)
-        return _Prepared(fill, cells, np.zeros((0, 4)), near, cells.are_crossed, level)
-    chords = list_chords(fill.outline, feather)
+        near = NearChords(np.zeros(0, np.intp), nothing, nothing)
+        return _SortedOutline(fill, cells, np.zeros((0, 4)), near, cells.are_crossed, level)
+    chords = list_chords(curves, feather)
     near = find_candidates(chords.ends, 0.5 * feather + fill.growth + 1.0, grid)
     pairs = np.stack([chords.ends, np.pad(chords.feathers, ((0, 0), (0, 2)))], axis=1).reshape(-1, 4)
-    return _Prepared(fill, cells, pairs, near, near.counts > 0, level)
+    return _SortedOutline(fill, cells, pairs, near, near.counts > 0, level)
 
 
-def _combine_levels(prepared: Sequence[_Prepared], grid: Grid) -> tuple[Array, Array, list[Array]]:
+def _combine_levels(prepared: Sequence[_SortedOutline], grid: TileGrid) -> tuple[Array, Array, list[Array]]:
     """What the outlines make of a mask in tiles where none matters, and the tiles in which each has an entry.
 
     In a tile that one matters in, all that change the mask have one; so have those that do more than scale and add.
@@ -90,40 +95,40 @@ def _combine_levels(prepared: Sequence[_Prepared], grid: Grid) -> tuple[Array, A
     return ends[1] - ends[0], ends[0], is_listed
 
 
-def _combine(below: Array, cover: Array, fill: PathFill) -> Array:
+def _combine(below: Array, cover: Array, fill: OutlineFill) -> Array:
     """A mask with one more outline, as `path_combine` has it."""
     cover = 1.0 - cover if fill.invert else cover
     amount, kept = cover * fill.opacity, 1.0 - fill.opacity * (1.0 - cover)
     match fill.mode:
-        case 0:
+        case "union":
             return below + amount * (1.0 - below)
-        case 1:
+        case "subtract":
             return below * (1.0 - amount)
-        case 2:
+        case "intersect":
             return below * kept
-        case 3:
+        case "max":
             return np.maximum(below, amount)
-        case 4:
+        case "min":
             return np.minimum(below, kept)
-        case 5:
+        case "difference":
             return np.abs(below - amount)
-        case _:
+        case "plus":
             return np.minimum(below + amount, 1.0)
 
 
-def _is_linear(cover: Array, fill: PathFill) -> Array:
+def _is_linear(cover: Array, fill: OutlineFill) -> Array:
     """True where a mask of 0..1 becomes itself times a number, plus another one."""
-    if fill.mode <= _INTERSECT or fill.opacity == 0.0:
+    if fill.mode in _LINEAR or fill.opacity == 0.0:
         return np.ones(cover.shape, bool)
     return (fill.opacity == 1.0) & ((cover == 0.0) | (cover == 1.0))
 
 
-def _is_idle(cover: Array, fill: PathFill) -> Array:
+def _is_idle(cover: Array, fill: OutlineFill) -> Array:
     """True where an outline leaves all masks of 0..1 as they are."""
-    return cover == (1.0 if fill.mode in (_INTERSECT, _MIN) else 0.0)
+    return cover == (1.0 if fill.mode in _KEEPING else 0.0)
 
 
-def _list_entries(prepared: Sequence[_Prepared], is_listed: Sequence[Array], tiles: Array) -> Array:
+def _list_entries(prepared: Sequence[_SortedOutline], is_listed: Sequence[Array], tiles: Array) -> Array:
     """The entries of all tiles; `tiles` gets the first one of each tile, and how many there are."""
     counts = sum((listed.astype(np.intp) for listed in is_listed), np.zeros(tiles.shape[:2], np.intp))
     first = np.cumsum(counts).reshape(counts.shape) - counts
@@ -148,7 +153,7 @@ def _list_entries(prepared: Sequence[_Prepared], is_listed: Sequence[Array], til
     return entries
 
 
-def _pack_candidates(prepared: Sequence[_Prepared]) -> Array:
+def _pack_candidates(prepared: Sequence[_SortedOutline]) -> Array:
     """The numbers of chords near each tile of each outline, four to a texel; the last one is repeated."""
     packed, first = [np.zeros((0, 4))], 0
     for item in prepared:

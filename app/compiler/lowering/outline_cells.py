@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ._flattening import Array, spread_counts
+from .outline_curves import Array, spread_counts
 
 TILE, STRIP = 16, 4
 """Pixels of a side of a tile, and of the height of a cell, of which a tile has four. Chosen by judgement: halves of
@@ -19,7 +19,7 @@ _ROUNDING = 1e-6
 """Of sums of heights in 64 bits, and of fewer than a million numbers."""
 
 
-class Grid(NamedTuple):
+class TileGrid(NamedTuple):
     """The tiles of a picture with those beyond its frame."""
 
     across: int
@@ -33,7 +33,7 @@ class Grid(NamedTuple):
         return float(self.beyond * TILE)
 
 
-class Cells(NamedTuple):
+class SegmentCells(NamedTuple):
     """The parts of segments in cells, sorted by cell, where the left top corner of each is 0."""
 
     parts: Array
@@ -53,7 +53,7 @@ class Cells(NamedTuple):
         return np.logical_or(is_stepped, self.counts.reshape(rows.shape[:3]).any(axis=1))
 
 
-def sort_into_cells(ends: Array, grid: Grid) -> Cells:
+def sort_into_cells(ends: Array, grid: TileGrid) -> SegmentCells:
     """The parts of segments in the cells of a grid. What lies left of it counts as if it ran down its left edge."""
     across, strips = grid.across, grid.down * TILE // STRIP
     ends = _keep_rows(ends + grid.corner, float(strips * STRIP))
@@ -71,7 +71,7 @@ def sort_into_cells(ends: Array, grid: Grid) -> Cells:
     parts = parts - np.stack([cell % across * TILE, cell // across * STRIP] * 2, axis=1)
     counts = np.bincount(cell, minlength=strips * across)
     shape = strips, across
-    return Cells(
+    return SegmentCells(
         parts, (np.cumsum(counts) - counts).reshape(shape), counts.reshape(shape), _sum_backdrops(parts, cell, shape)
     )
 

@@ -4,14 +4,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ._cells import TILE, Grid
-from ._flattening import Array
+from .outline_cells import TILE, TileGrid
+from .outline_curves import Array
 
 _ROUNDING = 0.01
 """Pixels: places in 32 bits are exact to this up to 131,072 pixels."""
 
 
-class Candidates(NamedTuple):
+class NearChords(NamedTuple):
     """Numbers of chords by tile, those of a tile after each other."""
 
     chords: Array
@@ -20,7 +20,7 @@ class Candidates(NamedTuple):
     counts: Array
 
 
-def find_candidates(ends: Array, reach: float, grid: Grid) -> Candidates:
+def find_candidates(ends: Array, reach: float, grid: TileGrid) -> NearChords:
     """The chords that can be nearest to a pixel of a tile, within reach.
 
     Squares are cut into four again and again. The chords of a square are those that are no farther from its middle than
@@ -41,7 +41,7 @@ def find_candidates(ends: Array, reach: float, grid: Grid) -> Candidates:
     if len(chord):
         starts[squares[:, 1], squares[:, 0]] = np.cumsum(sizes) - sizes
         counts[squares[:, 1], squares[:, 0]] = sizes
-    return Candidates(chord, starts, counts)
+    return NearChords(chord, starts, counts)
 
 
 def _cut_squares(

@@ -1,11 +1,14 @@
 """Closed cubic curves as straight segments, in 64 bits. All lengths are pixels."""
 
-from collections.abc import Sequence
 from typing import NamedTuple, Self
 
 import numpy as np
+from halation.nodes import OutlineFill
 
 Array = np.ndarray
+
+_FARTHEST = 1e6
+"""Pixels from the corner of the picture: no picture is so large, and what lies beyond is the same within it."""
 
 _FINE = 0.002
 """How far in pixels a segment may be from its curve: keeps coverage within 2e-3 of exact areas, as the polygon is on
@@ -29,7 +32,7 @@ _LEAST_SLACK = 0.05
 """The least such distance in pixels: a twentieth of a pixel is not seen in an edge of a few pixels."""
 
 
-class Outline(NamedTuple):
+class PlacedCurves(NamedTuple):
     """Closed contours of cubic curves."""
 
     curves: Array
@@ -40,15 +43,19 @@ class Outline(NamedTuple):
     """The feather of the point where each curve starts."""
 
     @classmethod
-    def of(cls, contours: Sequence[Array], feathers: Sequence[Array] = ()) -> Self:
-        """The outline of contours, each the curves of a closed line, and the feathers of their points."""
-        contours = [contour for contour in contours if len(contour)]
-        curves = np.concatenate([np.zeros((0, 8)), *contours])
+    def of(cls, fill: OutlineFill) -> Self:
+        """The outline of a fill in pixels. What lies farther away than any picture is moved nearer."""
+        sources = [[np.array(contour).reshape(-1, 2) for contour in contours] for contours in fill.contours]
+        matrices = [(place.number, np.array(place.matrix).reshape(2, 3)) for place in fill.places]
+        placed = [
+            contour @ matrix[:, :2].T + matrix[:, 2] for number, matrix in matrices for contour in sources[number]
+        ]
+        contours = [contour.reshape(-1, 8) for contour in placed if len(contour)]
+        curves = np.clip(np.concatenate([np.zeros((0, 8)), *contours]), -_FARTHEST, _FARTHEST)
         counts = np.array([len(contour) for contour in contours], np.intp)
         following = np.arange(1, len(curves) + 1)
         following[np.cumsum(counts) - 1] = np.cumsum(counts) - counts
-        widths = np.concatenate(list(feathers)) if len(feathers) else np.zeros(len(curves))
-        return cls(curves, following, widths)
+        return cls(curves, following, np.array(fill.feathers) if fill.feathers else np.zeros(len(curves)))
 
     @property
     def bends(self) -> Array:
@@ -70,14 +77,14 @@ class Outline(NamedTuple):
         return _measure(b - a) + _measure(c - b) + _measure(d - c)
 
 
-class Segments(NamedTuple):
+class StraightSegments(NamedTuple):
     """Straight segments: a row of x and y of both ends for each, and the feather at both ends."""
 
     ends: Array
     feathers: Array
 
 
-def flatten(outline: Outline) -> Segments:
+def flatten(outline: PlacedCurves) -> StraightSegments:
     """Polygons with the areas of the contours.
 
     Chords lie inside of a curve by two thirds of their sagitta, on average, which is the second derivative times
@@ -89,13 +96,13 @@ def flatten(outline: Outline) -> Segments:
     return _divide(outline, np.minimum(np.sqrt(0.75 * bends / _FINE), short), 1.0 / 12.0)
 
 
-def list_chords(outline: Outline, feather: float) -> Segments:
+def list_chords(outline: PlacedCurves, feather: float) -> StraightSegments:
     """Chords that stand for the distance to an outline, where an edge is as wide as a feather."""
     slack = max(_LOOSE * feather, _LEAST_SLACK)
     return _divide(outline, np.sqrt(0.75 * outline.bends / slack), 0.0)
 
 
-def _divide(outline: Outline, wanted: Array, push: float) -> Segments:
+def _divide(outline: PlacedCurves, wanted: Array, push: float) -> StraightSegments:
     """Curves in as many parts as wanted. n parts are at most 3 / 4 of the bend / n^2 away from their curve."""
     counts = np.clip(np.ceil(wanted), 1, _MOST).astype(np.intp)
     curve, number = spread_counts(counts)
@@ -110,10 +117,10 @@ def _divide(outline: Outline, wanted: Array, push: float) -> Segments:
     after[first + counts - 1] = first[outline.following]
     widths = outline.feathers[:, None]
     widths = (widths[curve] * u + widths[outline.following[curve]] * t)[:, 0]
-    return Segments(np.hstack([places, places[after]]), np.stack([widths, widths[after]], axis=1))
+    return StraightSegments(np.hstack([places, places[after]]), np.stack([widths, widths[after]], axis=1))
 
 
-def _find_shifts(outline: Outline, counts: Array, curve: Array, t: Array) -> Array:
+def _find_shifts(outline: PlacedCurves, counts: Array, curve: Array, t: Array) -> Array:
     """The second derivative times dt^2 across the curve at each point; between two curves the mean of both."""
     first = np.cumsum(counts) - counts
     shifts = _bend_across(outline.curves[curve], t) / (counts[curve] ** 2)[:, None]
