@@ -31,8 +31,8 @@ class Roto(Filter):
 
     The mask is how much of each pixel the shapes cover, to 2e-3. Shapes are combined in the order of their names.
     Points and tangents are fractions of the picture, so that shapes are the same at every size. A feather is measured
-    from the nearest point of the spline, and a wide one costs no more than a narrow one. Where a spline overlaps
-    itself, the pixels count once if both parts run the same way around.
+    from the nearest point of the spline, and a wide one costs no more than a narrow one. A spline that
+    crosses itself is solid: what it runs around counts once, however often (nonzero winding), and has no edge inside.
     """
 
     aliases = (

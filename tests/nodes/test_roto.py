@@ -204,3 +204,63 @@ def test_a_large_picture_is_the_same_in_tiles():
         masks.append(engine.render(graph, RenderRequest({}, size=(301, 203), precision="float"))["mask"])
         engine.close()
     np.testing.assert_array_equal(*masks)
+
+
+def pixels_of(corners: list[tuple[float, float]]) -> RotoShape:
+    """A shape of straight sides, from its corners in pixels."""
+    return RotoShape(points=join_points([(x / WIDTH, y / HEIGHT) for x, y in corners]))
+
+
+def make_star(inner: float, count: int = 10) -> np.ndarray:
+    turns = np.arange(count) * 2.0 * np.pi / count
+    radii = np.where(np.arange(count) % 2, inner, 30.0)
+    return np.column_stack([50.3 + radii * np.sin(turns), 37.6 - radii * np.cos(turns)])
+
+
+def make_box(left: float, top: float, right: float, bottom: float) -> np.ndarray:
+    return np.array([(left, top), (right, top), (right, bottom), (left, bottom)])
+
+
+PENTAGRAM = make_star(30.0 * np.sin(np.pi / 10) / np.sin(3 * np.pi / 10))
+"""All ten corners of the star that five lines make, each from a tip to the next but one."""
+
+CROSSED = {
+    "a star in one stroke": (PENTAGRAM[::2][[0, 2, 4, 1, 3]], [PENTAGRAM]),
+    "backward": (PENTAGRAM[::2][[3, 1, 4, 2, 0]], [PENTAGRAM]),
+    "an eight": (
+        np.array([(10.2, 10.7), (60.2, 60.7), (60.2, 10.7), (10.2, 60.7)]),
+        [np.array([(10.2, 10.7), (35.2, 35.7), (10.2, 60.7)]), np.array([(60.2, 60.7), (35.2, 35.7), (60.2, 10.7)])],
+    ),
+    "twice around": (
+        np.array(
+            [
+                (10.5, 10.5),
+                (50.5, 10.5),
+                (50.5, 60.5),
+                (30.5, 60.5),
+                (30.5, 25.5),
+                (70.5, 25.5),
+                (70.5, 40.5),
+                (10.5, 40.5),
+            ]
+        ),
+        [make_box(10.5, 10.5, 30.5, 40.5), make_box(30.5, 10.5, 50.5, 60.5), make_box(50.5, 25.5, 70.5, 40.5)],
+    ),
+}
+"""The corners of a line that crosses itself, and the simple polygons that it covers."""
+
+
+@pytest.mark.parametrize("name", CROSSED)
+def test_a_line_that_crosses_itself_is_solid(run, name):
+    corners, solid = CROSSED[name]
+    expected = sum(measure_coverage(polygon, SIZE) for polygon in solid)
+    np.testing.assert_allclose(mask_of(run, pixels_of(corners.tolist())), expected, atol=2e-3)
+
+
+def test_a_feather_knows_no_edges_inside_of_a_star(run):
+    """Compared beside the outer edge, where the coverage of a pixel says on which side it is."""
+    corners, (solid,) = CROSSED["a star in one stroke"]
+    mask = mask_of(run, change(pixels_of(corners.tolist()), feather=12.0 / HEIGHT))
+    distance = measure_distance(solid, SIZE)
+    t, is_beside = np.clip(0.5 + distance / 12.0, 0.0, 1.0), np.abs(distance) > 1.0
+    np.testing.assert_allclose(mask[is_beside], (3.0 * t**2 - 2.0 * t**3)[is_beside], atol=5e-3)

@@ -91,10 +91,8 @@ class Recorder(OutlineDraw):
     ) -> None:
         self.size, self.rate, self.start = size, settings.rate, (settings.frames or (1, 1))[0]
         self.overscan = math.ceil(settings.overscan * size[1])
-        self.reads_frame = False
-        """Whether the node asked for the frame."""
-        self.reads_other_times = False
-        """Whether it asked for its values at another time."""
+        self.reads_frame = self.reads_other_times = False
+        """Whether the node asked for the frame, and for its values at another time."""
         self.typeset, self.expand_text = resources.typeset, partial(resources.expand_text, self)
         self._owner, self._inputs, self._node, self._shader = inputs.path, inputs, node, node.shader
         self._builder, self._library, self._resources = builder, library, resources

@@ -9,7 +9,7 @@ import math
 from array import array
 from collections.abc import Sequence
 
-from halation.nodes import Draw, Drawn, Field, OutlineFill, Vector
+from halation.nodes import Draw, Drawn, Field, OutlineFill, Pixels, Vector
 
 _TILE, _LEAST_BITS = 16, 7  # pixels; tables are at least 128 texels wide, so that small ones have few rows
 
@@ -17,7 +17,7 @@ _TILE, _LEAST_BITS = 16, 7  # pixels; tables are at least 128 texels wide, so th
 class OutlineDraw:
     """The part of `Draw` that fills outlines."""
 
-    def fill(self: Draw, mask: Drawn, fills: Sequence[OutlineFill]) -> Drawn:
+    def fill(self: Draw, mask: Pixels, fills: Sequence[OutlineFill]) -> Drawn:
         """The mask with all outlines, one after the other: see the GLSL."""
         from .outline_tables import ENTRY, build_tables
 

@@ -15,6 +15,7 @@ from halation.nodes import OutlineFill
 from .outline_cells import STRIP, TILE, SegmentCells, TileGrid, sort_into_cells
 from .outline_chords import NearChords, find_candidates
 from .outline_curves import Array, PlacedCurves, flatten, list_chords
+from .outline_union import keep_edges
 
 ENTRY = 10
 """Texels of an entry: two, and two for each of four strips."""
@@ -64,14 +65,14 @@ def build_tables(fills: Sequence[OutlineFill], size: tuple[int, int], beyond: in
 
 def _prepare(fill: OutlineFill, grid: TileGrid) -> _SortedOutline:
     curves = PlacedCurves.of(fill)
-    cells = sort_into_cells(flatten(curves).ends, grid)
+    cells = sort_into_cells(keep_edges(flatten(curves)).ends, grid)
     feather = fill.feather + curves.feathers.max(initial=0.0)
     level = np.minimum(np.abs(cells.backdrops[::_STRIPS, :, 0]), 1.0)
     if feather <= 0.0 and fill.growth <= 0.0:
         nothing = np.zeros(cells.are_crossed.shape, np.intp)
         near = NearChords(np.zeros(0, np.intp), nothing, nothing)
         return _SortedOutline(fill, cells, np.zeros((0, 4)), near, cells.are_crossed, level)
-    chords = list_chords(curves, feather)
+    chords = keep_edges(list_chords(curves, feather))
     near = find_candidates(chords.ends, 0.5 * feather + fill.growth + 1.0, grid)
     pairs = np.stack([chords.ends, np.pad(chords.feathers, ((0, 0), (0, 2)))], axis=1).reshape(-1, 4)
     return _SortedOutline(fill, cells, pairs, near, near.counts > 0, level)
