@@ -22,7 +22,8 @@ def check_aliases(aliases: object) -> None:
     """Raise TypeError for other names that are no tuple of texts in lower case."""
     if isinstance(aliases, str):
         raise TypeError(f"its aliases are one text, which would be taken letter by letter: write ({aliases!r},)")
-    if not isinstance(aliases, tuple) or not all(isinstance(name, str) and name == name.lower() for name in aliases):
+    names: tuple[object, ...] | None = aliases if isinstance(aliases, tuple) else None
+    if names is None or not all(isinstance(name, str) and name == name.lower() for name in names):
         raise TypeError(f"its aliases are {aliases!r}: write a tuple of names in lower case")
 
 

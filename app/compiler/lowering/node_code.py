@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
-from halation.nodes import Draw, Filter, Reach, Socket, find_fault_place
+from halation.nodes import CameraModel, Draw, Drawn, Filter, Reach, Socket, find_fault_place
 
 from ...errors import GraphError, HalationError
 
 
-def run_passes(node: Filter, recorder: Draw, path: str) -> Any:
+def run_passes(node: Filter, recorder: Draw, path: str) -> Drawn | Mapping[str, Drawn | CameraModel]:
     """What a node draws. Raises GraphError where the code of a plug-in fails: users cannot tell it from ours."""
     try:
         return node.passes(recorder)
@@ -26,11 +25,11 @@ def run_passes(node: Filter, recorder: Draw, path: str) -> Any:
 
 def check_options(size: object, edge: object, result: object, overlap: object) -> None:
     """Raise TypeError where an option of a draw is meant to be the parameter of the GLSL function of that name."""
-    options = {
+    options: dict[str, tuple[object, type | tuple[type, ...], str]] = {
         "size": (size, tuple, "a width and a height"),
         "edge": (edge, str, "an edge mode"),
         "result": (result, Socket, "the type of the picture"),
-        "overlap": (overlap, int | tuple | Reach | Mapping, "how far the function reads"),
+        "overlap": (overlap, (int, tuple, Reach, Mapping), "how far the function reads"),
     }
     for name, (given, kind, meaning) in options.items():
         if given is not None and not isinstance(given, kind):
