@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Collection, Mapping
 from difflib import get_close_matches
-from typing import Any, get_args
+from typing import Any, cast, get_args
 
 _NUMBERS: Mapping[type, tuple[type, ...]] = {float: (float, int), int: (int,), bool: (bool,), str: (str,)}
 """What a default may be, by the type of its value: a whole number stands for a number of fractions."""
@@ -22,7 +22,7 @@ def check_aliases(aliases: object) -> None:
     """Raise TypeError for other names that are no tuple of texts in lower case."""
     if isinstance(aliases, str):
         raise TypeError(f"its aliases are one text, which would be taken letter by letter: write ({aliases!r},)")
-    names: tuple[object, ...] | None = aliases if isinstance(aliases, tuple) else None
+    names = cast("tuple[object, ...]", aliases) if isinstance(aliases, tuple) else None
     if names is None or not all(isinstance(name, str) and name == name.lower() for name in names):
         raise TypeError(f"its aliases are {aliases!r}: write a tuple of names in lower case")
 
