@@ -223,13 +223,12 @@ class FrameCampaign:
         else:
             for frame in missing:
                 self._judge_fault(frame, report, assignment)
-        if report.faults:
+        if report.faults and not report.seconds:
             sentence = str(next(iter(report.faults.values()))["message"])
-            has_finished = bool(report.seconds)
-            if self._workers.note_outcome(report.worker, has_finished=has_finished, sentence=sentence):
+            if self._workers.note_failure(report.worker, report.faults, sentence):
                 self._refuse(report.worker, self._workers.refusals[report.worker])
         else:
-            self._workers.note_outcome(report.worker, has_finished=True, sentence="")
+            self._workers.note_success(report.worker)
 
     def _judge_stage(self, report: ChunkReport, stage: StageReport, assignment: Assignment) -> None:
         """Take in a stage, and try the rest of it again, or give up the frames that need it."""
@@ -274,8 +273,10 @@ class FrameCampaign:
         again = replace(assignment, attempts=attempts, tried=tried, fault=facts)
         if attempts < MAX_ATTEMPTS and (self._workers.has_others(tried) or self._workers.expects_others(tried)):
             self._frames.put_back(again)
-        else:
-            self._give_up_fault(again, facts)
+            return
+        for address in self._workers.pardon(assignment.frames) if len(tried) > 1 else ():
+            self._listener.report_note(f"worker {address}: others fail with the same frames: it gets frames again")
+        self._give_up_fault(again, facts)
 
     def _give_up_fault(self, assignment: Assignment, facts: Mapping[str, Any]) -> None:
         """Render frames no more that cannot be rendered, nor those that need them."""

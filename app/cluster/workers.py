@@ -30,7 +30,10 @@ class WorkerRoster:
     def __init__(self, *, wants_gpu: bool) -> None:
         self._wants_gpu = wants_gpu
         self._facts: dict[str, Mapping[str, Any]] = {}
-        self._failures = Counter[str]()
+        self._failures: dict[str, list[frozenset[int]]] = {}
+        """The frames of each chunk with which a worker has failed, since it has last finished one."""
+        self._bad_frames: set[int] = set()
+        """Frames that were given up after several workers had failed with them: these say nothing about a worker."""
         self._changed_at = -math.inf
         """When a worker has come or gone last."""
         self.has_changed = False
@@ -114,13 +117,36 @@ class WorkerRoster:
                 continue
             yield address
 
-    def note_outcome(self, address: str, *, has_finished: bool, sentence: str) -> bool:
-        """Note whether a worker has finished frames of a chunk; True if it has failed too often, and gets no more."""
-        self._failures[address] = 0 if has_finished else self._failures[address] + 1
-        if self._failures[address] < FAILURES or address in self.refusals:
+    def note_success(self, address: str) -> None:
+        """Note that a worker has finished frames."""
+        self._failures.pop(address, None)
+
+    def note_failure(self, address: str, frames: Iterable[int], sentence: str) -> bool:
+        """Note frames of a chunk of which a worker has finished none; True if it gets no more because of that.
+
+        The only worker goes on: the frames may be at fault, and others can still be rendered.
+        """
+        frames = frozenset(frames) - self._bad_frames
+        if frames:
+            self._failures.setdefault(address, []).append(frames)
+        if len(self._failures.get(address, ())) < FAILURES or address in self.refusals:
+            return False
+        if not self.has_others((address,)):
             return False
         self.refusals[address] = f"it has failed {FAILURES} times in a row: {sentence}"
         return True
+
+    def pardon(self, frames: Iterable[int]) -> list[str]:
+        """Take frames for bad ones, which several workers have failed with; the workers that may render again."""
+        self._bad_frames.update(frames)
+        pardoned: list[str] = []
+        for address, failures in self._failures.items():
+            was_refused = len(failures) >= FAILURES and address in self.refusals
+            failures[:] = [rest for chunk in failures if (rest := chunk - self._bad_frames)]
+            if was_refused and len(failures) < FAILURES:
+                del self.refusals[address]
+                pardoned.append(address)
+        return pardoned
 
     def _count_gpus(self, address: str) -> int:
         return int(self._facts[address].get("resources", {}).get("GPU", 0))

@@ -292,3 +292,13 @@ def test_a_chain_with_a_missing_picture_names_each_frame(halation, shot, farm):
     assert ending.code == 1 and "frame 5: " in ending.err and "p.0005.exr" in ending.err, ending.err
     assert "frame 6: one worker renders all frames, and frame 5 cannot be rendered" in ending.err
     assert list_written(shot) == [1, 2, 3, 4]
+
+
+def test_a_row_of_faulty_frames_costs_no_worker(halation, shot, farm):
+    """Six plates are missing: each of their frames is named, and the others are finished."""
+    for frame in range(2, 8):
+        (shot / "plates" / f"p.{frame:04d}.exr").unlink()
+    ending = halation(*render_words(farm))
+    assert ending.code == 1, ending.err
+    assert [frame for frame in range(1, 9) if f"frame {frame}: " in ending.err] == [*range(2, 8)], ending.err
+    assert list_written(shot) == [1, 8]

@@ -82,6 +82,34 @@ def test_what_waits_is_ready_or_hopeless_once(roster, clock):
     assert waiting.take_ready() == [] and waiting.take_hopeless() == [second] and not waiting
 
 
+def fail(roster, address: str, *frames: int) -> list[bool]:
+    """A chunk of one frame after the other fails on a worker."""
+    return [roster.note_failure(address, (frame,), "full") for frame in frames]
+
+
+def test_a_worker_that_fails_again_and_again_gets_no_more_frames(roster):
+    connect(roster, NEAR, FAR)
+    assert fail(roster, NEAR, 1, 2) == [False, False]
+    roster.note_success(NEAR)
+    assert fail(roster, NEAR, 3, 4, 5) == [False, False, True] and roster.usable == [FAR]
+    assert "it has failed 3 times in a row: full" in roster.refusals[NEAR]
+
+
+def test_the_only_worker_goes_on_until_there_is_another(roster):
+    connect(roster, NEAR)
+    assert not any(fail(roster, NEAR, 1, 2, 3, 4)) and roster.usable == [NEAR]
+    connect(roster, NEAR, FAR)
+    assert fail(roster, NEAR, 5) == [True]
+
+
+def test_frames_that_all_workers_fail_with_cost_no_worker(roster):
+    connect(roster, NEAR, FAR)
+    assert fail(roster, NEAR, 1, 2, 3)[-1]
+    assert roster.pardon((1,)) == [NEAR] and roster.usable == [NEAR, FAR]
+    assert fail(roster, FAR, 1, 1, 1) == [False] * 3  # known to be bad: they say nothing about it
+    assert fail(roster, NEAR, 4) == [True] and roster.pardon((9,)) == []
+
+
 @pytest.mark.parametrize("kind", ["free", "memory", "chain"])
 def test_a_worker_that_comes_after_one_with_a_full_disk_renders_what_waits(halation, shot, make_farm, tmp_path, kind):
     """Frames by themselves, with a memory that workers share, and one after the other."""
@@ -120,7 +148,7 @@ def test_frames_wait_where_all_others_were_killed(halation, shot, make_farm, tmp
     farm.start_worker(**full)
     process = start_halation(*render_words(farm), cwd=shot)
     assert process.stderr is not None
-    while "it has failed 3 times in a row" not in (line := process.stderr.readline()):
+    while "frames wait for another worker" not in (line := process.stderr.readline()):
         assert line
     farm.start_worker()
     _, err = process.communicate(timeout=100)
