@@ -16,7 +16,7 @@ from ..graph import INPUTS, OUTPUTS, Graph, Input, find_key_range
 from ..graph.frames import is_video
 from ..media.layers import split_layer
 from ..resources.input_files import fingerprint
-from ..resources.picture import Picture
+from ..resources.picture import NumberTable, Picture
 from ..resources.provider import PictureProbe
 from ..resources.sandbox import Sandbox
 
@@ -157,7 +157,9 @@ class MediaProvider:
             import numpy as np
 
             pixels: Any = picture.pixels
-            array = np.asarray(pixels, np.float32) if isinstance(pixels, memoryview) else pixels
+            array = pixels
+            if isinstance(pixels, NumberTable):
+                array = np.frombuffer(pixels.content, np.float32).reshape(pixels.height, pixels.width, 4)
             return fit_channels(array, picture.kind, picture.width)
         from ..color.management import get_color_manager
         from ..media.convert import LayerRequest

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 from halation.nodes import ColorSettings, Kind
-from msgspec import field
+from msgspec import Struct, field
 
 from .record import Record
 
@@ -19,6 +19,17 @@ first budget for pictures, 512 MiB. Chosen by judgement: with half as many, prox
 
 PixelRectangle = tuple[int, int, int, int]
 """A rectangle of pixels: x, y, width and height. The top left pixel of a frame is (0, 0)."""
+
+
+class NumberTable(Struct, frozen=True):
+    """Numbers that a node made, as pixels of four channels: floats of 32 bits in the order of bytes of the machine.
+
+    Bytes, because what is written of a plan must not depend on the process that has made it.
+    """
+
+    height: int
+    width: int
+    content: bytes
 
 
 class Picture(Record, frozen=True):

@@ -209,7 +209,11 @@ def test_typing_is_saved_with_the_graph_and_helped(gui, path) -> None:
         ui.click("button code help")
         ui.wait(2)
         ui.wheel(-40)
-        ui.wheel(3)
+        _, top, _, _ = ui.editor.places["Code"]
+        for _ in range(40):
+            if ui.editor.places.get("include lib/color", (0, 0))[1] > top + 60.0:  # below the title and the search
+                break
+            ui.wheel(1)
         ui.click("include lib/color")
         ui.until(lambda: text_of(ui).startswith('#include "lib/color.glsl"\n'))
         ui.settled()
