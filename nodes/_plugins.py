@@ -25,7 +25,6 @@ from functools import cache
 from importlib.machinery import PathFinder
 from importlib.util import find_spec
 from pathlib import Path
-from traceback import walk_tb
 from types import MappingProxyType, ModuleType
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -138,11 +137,7 @@ def _locate_fault(fault: BaseException, folder: Path, label: str) -> str:
 
     The declarations of Halation, which check a class while it is made, are never at fault.
     """
-    places: list[tuple[str, int | None]] = []
-    step = fault.__traceback__
-    while step is not None:
-        places.append((step.tb_frame.f_code.co_filename, step.tb_lineno))
-        step = step.tb_next
+    places = _list_places(fault)
     if isinstance(fault, SyntaxError) and fault.filename:
         places.append((fault.filename, fault.lineno))
     own_folder = Path(__file__).parent
@@ -154,10 +149,20 @@ def _locate_fault(fault: BaseException, folder: Path, label: str) -> str:
     return ""
 
 
+def _list_places(fault: BaseException) -> list[tuple[str, int | None]]:
+    """The files and lines that ran when something failed, the innermost last."""
+    places: list[tuple[str, int | None]] = []
+    step = fault.__traceback__
+    while step is not None:
+        places.append((step.tb_frame.f_code.co_filename, step.tb_lineno))
+        step = step.tb_next
+    return places
+
+
 def find_fault_place(fault: BaseException, node: type[Node]) -> str:
     """The file and the line of a node at which its code failed, the last one that ran; "" if none of it ran."""
     file = getattr(sys.modules.get(node.__module__), "__file__", None)
-    lines = [line for frame, line in walk_tb(fault.__traceback__) if frame.f_code.co_filename == file]
+    lines = [line for name, line in _list_places(fault) if name == file]
     return f"{node.__module__.removeprefix('halation.').replace('.', '/')}.py, line {lines[-1]}" if lines else ""
 
 
