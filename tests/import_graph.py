@@ -42,9 +42,10 @@ def targets(tree: ast.AST, package: str) -> Iterator[str]:
                 yield inner if inner in MODULES else resolve(base)
 
 
-def imports(name: str) -> set[str]:
+@cache
+def imports(name: str) -> frozenset[str]:
     """What a module of the tree imports: names of the tree, and names of libraries."""
-    return set(targets(ast.parse(MODULES[name].read_text(encoding="utf-8"), name), name.rpartition(".")[0]))
+    return frozenset(targets(ast.parse(MODULES[name].read_text(encoding="utf-8"), name), name.rpartition(".")[0]))
 
 
 @cache

@@ -78,7 +78,8 @@ def test_pictures_of_the_editor(gui, theme: str) -> None:
             ui.type("blur", enter=False)
         ui.editor.log.entries.clear()
         ui.wait(10)
-        keep(ui.shot(f"editor_{theme}.png"), IMAGES / ("editor.png" if theme == "dark" else "editor_light.png"))
+        picture = ui.capture(ui.folder / f"editor_{theme}.png")
+        keep(picture, IMAGES / ("editor.png" if theme == "dark" else "editor_light.png"))
 
     preset = next(path for path in presets.paths() if path.stem == "film_halation")
     gui(body, preset, size=(1600, 1000), likes={"theme": theme, "ui_scale": 1.0})

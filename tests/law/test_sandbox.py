@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from collections import defaultdict
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -168,16 +169,24 @@ def trees() -> dict[str, ast.AST]:
     return {str(path.relative_to(APP)): ast.parse(path.read_text("utf-8")) for path in APP.rglob("*.py")}
 
 
+@cache
+def list_names() -> dict[str, set[str]]:
+    """Each name that is used, as a variable, an attribute or in an import, and the modules that use it."""
+    homes = defaultdict[str, set[str]](set)
+    for file, tree in trees().items():
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Name):
+                homes[node.id].add(file)
+            elif isinstance(node, ast.Attribute):
+                homes[node.attr].add(file)
+            elif isinstance(node, ast.alias):
+                homes[node.name].add(file)
+    return homes
+
+
 def find_names(name: str) -> set[str]:
     """The modules that have a name."""
-    return {
-        file
-        for file, tree in trees().items()
-        for node in ast.walk(tree)
-        if (isinstance(node, ast.Name) and node.id == name)
-        or (isinstance(node, ast.Attribute) and node.attr == name)
-        or (isinstance(node, ast.alias) and node.name == name)
-    }
+    return list_names().get(name, set())
 
 
 def opens_file(call: ast.Call) -> bool:
@@ -214,11 +223,14 @@ def test_files_are_opened_in_few_places() -> None:
 def find_changers() -> Iterator[str]:
     for file, tree in trees().items():
         for node in ast.walk(tree):
-            if not isinstance(node, ast.FunctionDef) or "sandbox" in ast.unparse(node):
+            if not isinstance(node, ast.FunctionDef):
                 continue
             calls = (call.func for call in ast.walk(node) if isinstance(call, ast.Call))
-            names = (ast.unparse(call).split(".") for call in calls if isinstance(call, ast.Attribute))
-            if any(name in CHANGING_CALLS and (name != "remove" or owner == "os") for *_, owner, name in names):
+            changes = (call for call in calls if isinstance(call, ast.Attribute) and call.attr in CHANGING_CALLS)
+            is_changing = any(
+                call.attr != "remove" or ast.unparse(call.value).split(".")[-1] == "os" for call in changes
+            )
+            if is_changing and "sandbox" not in ast.unparse(node):
                 yield file
 
 

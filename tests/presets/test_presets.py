@@ -9,7 +9,8 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Iterator
-from functools import cache
+from dataclasses import dataclass
+from functools import cache, lru_cache
 from itertools import pairwise, product
 from pathlib import Path
 
@@ -71,7 +72,8 @@ LAYERS = {
 }
 """What inputs are called, so that a render's layers find theirs in every preset."""
 
-each = pytest.mark.parametrize("name", PRESETS)
+each = pytest.mark.parametrize("name", PRESETS, scope="module")
+"""All tests of a preset one after the other: they share its picture and its programs."""
 
 
 @cache
@@ -130,34 +132,30 @@ def shrunk(light: Array, width: int, height: int) -> Array:
     return cv2.resize(light, (width, height), interpolation=cv2.INTER_AREA)
 
 
-class PictureTable(dict[str, Array]):
-    """A picture for each preset, made when it is asked for: a worker renders the presets of its own tests."""
+@dataclass(frozen=True)
+class FullPicture:
+    """What a preset makes at full size."""
 
-    def __init__(self, make: Callable[[str], Array]) -> None:
-        super().__init__()
-        self._make = make
-
-    def __missing__(self, name: str) -> Array:
-        self[name] = self._make(name)
-        return self[name]
+    light: Array
+    """Light of the display, [height, width, 3] within 0..1."""
+    brightest: float
+    """The largest scene-linear number; NaN where a pixel is not finite."""
 
 
-@pytest.fixture(scope="module")
-def brightest() -> dict[str, float]:
-    """The largest scene-linear number of the presets that were rendered; NaN where a pixel is not finite."""
-    return {}
+FullPictures = Callable[[str], FullPicture]
 
 
 @pytest.fixture(scope="module")
-def full(renderer: Renderer, brightest: dict[str, float]) -> PictureTable:
-    """What all presets make at full size, as light of the display."""
+def full(renderer: Renderer) -> FullPictures:
+    """The pictures of presets at full size: that of the last one is kept."""
 
-    def make(name: str) -> Array:
+    @lru_cache(maxsize=1)
+    def render(name: str) -> FullPicture:
         pixels = rendered(renderer, loaded(name))
-        brightest[name] = float(pixels[..., :3].max()) if np.isfinite(pixels).all() else math.nan
-        return show_light(pixels, loaded(name).outputs["image"].view)
+        brightest = float(pixels[..., :3].max()) if np.isfinite(pixels).all() else math.nan
+        return FullPicture(show_light(pixels, loaded(name).outputs["image"].view), brightest)
 
-    return PictureTable(make)
+    return render
 
 
 @pytest.fixture
@@ -247,21 +245,22 @@ def test_it_moves(name: str, renderer: Renderer) -> None:
 
 
 @each
-def test_nothing_is_crushed_or_clipped(name: str, full: PictureTable, brightest: dict[str, float]) -> None:
-    assert full[name].shape == (*size_of(loaded(name))[::-1], 3)
-    assert math.isfinite(brightest[name])
-    assert (full[name].max(2) < 0.001).mean() < 0.04
-    assert (full[name].min(2) > 0.999).mean() < 0.01
-    assert encoded(full[name]).std() > 15.0
+def test_nothing_is_crushed_or_clipped(name: str, full: FullPictures) -> None:
+    light = full(name).light
+    assert light.shape == (*size_of(loaded(name))[::-1], 3)
+    assert math.isfinite(full(name).brightest)
+    assert (light.max(2) < 0.001).mean() < 0.04
+    assert (light.min(2) > 0.999).mean() < 0.01
+    assert encoded(light).std() > 15.0
 
 
 @each
-def test_half_size_looks_the_same(name: str, renderer: Renderer, full: PictureTable) -> None:
+def test_half_size_looks_the_same(name: str, renderer: Renderer, full: FullPictures) -> None:
     """Mean difference of sRGB below 6/255; where fine lines or dots are drawn, a correlation above 0.75."""
     graph = loaded(name)
     proxy = encoded(picture(renderer, graph, scale=0.5))
     width, height = size_of(graph)
-    expected = encoded(shrunk(full[name], width // 2, height // 2))
+    expected = encoded(shrunk(full(name).light, width // 2, height // 2))
     if FINE & used(name, "id"):
         assert np.corrcoef(proxy.ravel(), expected.ravel())[0, 1] > 0.75
     else:
@@ -297,9 +296,9 @@ def test_another_picture_of_another_size(name: str, renderer: Renderer) -> None:
 
 
 @each
-def test_thumbnail_is_as_approved(name: str, full: PictureTable) -> None:
+def test_thumbnail_is_as_approved(name: str, full: FullPictures) -> None:
     """Mean difference of what JPEG makes of both below 2/255: other devices round differently."""
-    small = encoded(shrunk(full[name], 320, 180))[..., ::-1].round().astype(np.uint8)
+    small = encoded(shrunk(full(name).light, 320, 180))[..., ::-1].round().astype(np.uint8)
     fine = (cv2.IMWRITE_JPEG_QUALITY, 88, cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_444)
     made, file = cv2.imencode(".jpg", small, fine)[1], thumbnail(PRESETS[name])
     if RENEW:
@@ -312,26 +311,26 @@ def test_no_thumbnail_is_left_over() -> None:
     assert {file.stem for file in thumbnail(paths()[0]).parent.iterdir()} == PRESETS.keys()
 
 
-def test_a_display_view_goes_with_tone_mapping(
-    renderer: Renderer, full: PictureTable, brightest: dict[str, float], tmp_path: Path
+@each
+def test_a_display_view_goes_with_tone_mapping(name: str, full: FullPictures) -> None:
+    """What ends at 1 is finished, and needs no view, but for what is lit anew: that may just be dim."""
+    lit = "deferred_lighting" in used(name, "id")
+    ends = full(name).light.size > 0 and full(name).brightest < 1.5
+    assert loaded(name).outputs["image"].view == ("none" if ends and not lit else "")
+
+
+@pytest.mark.parametrize(("view", "expected"), [("", "none"), ("ACES", "ACES")])
+def test_a_finished_picture_has_a_view_if_someone_asks_for_one(
+    view: str, expected: str, renderer: Renderer, tmp_path: Path
 ) -> None:
-    """What a tone map finished is not tone mapped again by the view, unless someone asks for one.
-
-    What ends at 1 is finished, but for what is lit anew: that may just be dim.
-    """
-    for name in PRESETS:
-        lit = "deferred_lighting" in used(name, "id")
-        ends = full[name].size > 0 and brightest[name] < 1.5
-        assert loaded(name).outputs["image"].view == ("none" if ends and not lit else ""), name
-    graph = loaded("night_street")
-    for view, expected in (("", "none"), ("ACES", "ACES")):
-        file = tmp_path / f"night{view}.png"
-        run_job(renderer, graph, RenderRequest(), OutputSettings((("image", file),), view))
-        wanted = encoded(show_light(renderer.render(graph)["image"], expected))
-        assert np.abs(cv2.imread(str(file))[..., ::-1] - wanted).max() < 1.5
+    """What a tone map finished is not tone mapped again by the view."""
+    graph, file = loaded("night_street"), tmp_path / "night.png"
+    run_job(renderer, graph, RenderRequest(), OutputSettings((("image", file),), view))
+    wanted = encoded(show_light(renderer.render(graph)["image"], expected))
+    assert np.abs(cv2.imread(str(file))[..., ::-1] - wanted).max() < 1.5
 
 
-def test_pictures_of_the_documentation_are_current(renderer: Renderer, full: PictureTable) -> None:
+def test_pictures_of_the_documentation_are_current(renderer: Renderer, full: FullPictures) -> None:
     """docs/images: the sample before and after one of the presets."""
     sample = document.loads(
         '{"halation": 1, "inputs": {"beauty": {"file": "samples/neon.exr", "layer": "Combined"}},'
@@ -339,7 +338,7 @@ def test_pictures_of_the_documentation_are_current(renderer: Renderer, full: Pic
         folder=str(PRESETS["night_street"].parent),
         sandbox=UNRESTRICTED,
     )
-    hero = {"the render": picture(renderer, sample), "night_street": full["night_street"]}
+    hero = {"the render": picture(renderer, sample), "night_street": full("night_street").light}
     made, file = make_sheet(hero, 2), IMAGES / "hero.png"
     if RENEW:
         media.write_picture(file, {"image": made}, kinds={"image": Kind.IMAGE}, view="none", sandbox=UNRESTRICTED)
