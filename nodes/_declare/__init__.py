@@ -104,6 +104,7 @@ from .splines import (
     read_rows,
     split_curve,
     split_points,
+    trace_spline,
 )
 from .traits import ProxyNote, Trait
 from .values import (
@@ -328,5 +329,6 @@ __all__ = [
     "split_curve",
     "split_points",
     "toggle_name",
+    "trace_spline",
     "unit_factor",
 ]

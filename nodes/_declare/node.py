@@ -13,7 +13,7 @@ from typing import Annotated, Any, ClassVar, Self, dataclass_transform, get_type
 
 from .camera import CameraModel
 from .checks import check_aliases, check_names
-from .draw import Draw, Drawn
+from .draw import Affine, Draw, Drawn
 from .lengths import WORKING_UNITS, LengthUnits, declare_in_unit, is_length, resolve_length_unit, unit_factor
 from .masking import MASK, is_maskable, list_mask_values, list_own_names, make_mask
 from .sockets import Image, OutputSocket, Size, Socket
@@ -178,6 +178,13 @@ class Node:
         """
         return {}
 
+    def place_spline(self, name: str, size: Size) -> Affine | None:
+        """The map from the points of a spline value to pixels of a picture, or None if it has no effect now.
+
+        Asked with lengths in working units. Points are fractions of the picture, unless a class says otherwise.
+        """
+        return (size[0], 0.0, 0.0, 0.0, size[1], 0.0)
+
     @classmethod
     def upgrade(cls, version: int, values: dict[str, Any]) -> dict[str, Any]:
         """Values saved by an older `version` of this node, as the next version would have saved them."""
@@ -232,7 +239,18 @@ class Pointwise(Node, abstract=True):
 
     `shaders/<category>/<id>.glsl` has a function with the name of the node. Its parameters are the sockets and values
     in declared order. It returns the output; several outputs are `out` parameters at the end.
+
+    A node that some of its values ask for more than that has `passes` too, and says by `takes_passes` when they count.
+    Meanwhile a picture cannot drive its values.
     """
+
+    def takes_passes(self) -> bool:
+        """True if `passes` draws the node at these values, in place of its function."""
+        return False
+
+    def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        """Record the draws, and return all outputs by name."""
+        raise NotImplementedError
 
 
 class Filter(Node, abstract=True):

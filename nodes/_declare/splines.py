@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from .lettering import Contour
 from .rows import SPLINE_ROWS, Row
 
 Place = tuple[float, float]
@@ -47,6 +48,13 @@ def list_curves(points: tuple[Row, ...]) -> tuple[CubicCurve, ...]:
         )
         for start, end in zip(points, (*points[1:], *points[:1]), strict=True)
     )
+
+
+def trace_spline(numbers: Row, height: float) -> tuple[Contour, tuple[float, ...]]:
+    """A spline as an outline to fill, and the feathers of its points in pixels of a picture of this height."""
+    points = split_points(numbers)
+    contour = tuple((*a, *b, *c, *d) for a, b, c, d in list_curves(points))
+    return contour, tuple(max(point[6], 0.0) * height for point in points)
 
 
 def split_curve(curve: CubicCurve, t: float) -> tuple[CubicCurve, CubicCurve]:

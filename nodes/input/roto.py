@@ -19,10 +19,9 @@ from .._declare import (
     RotoShapeSet,
     Size,
     Slider,
-    list_curves,
     name_roto_shapes,
     roto_shapes_of,
-    split_points,
+    trace_spline,
 )
 
 
@@ -103,10 +102,8 @@ def _draw_mask(draw: Draw, matte: Drawn, outlines: list[RotoShape]) -> Drawn:
 
 def _trace(shape: RotoShape, size: Size) -> OutlineFill:
     """A shape, moved as it says, in pixels."""
-    points = split_points(shape.points)
-    contour = tuple((*a, *b, *c, *d) for a, b, c, d in list_curves(points))
+    contour, feathers = trace_spline(shape.points, size[1])
     return OutlineFill(
         ((contour,),), (OutlinePlace(0, shape.find_affine(size, shape.rotation)),),
-        shape.mode, shape.opacity, shape.invert, shape.feather,
-        tuple(max(point[6], 0.0) * size[1] for point in points),
+        shape.mode, shape.opacity, shape.invert, shape.feather, feathers,
     )  # fmt: skip

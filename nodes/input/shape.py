@@ -1,25 +1,58 @@
+"""Shapes from a few numbers, and one closed spline."""
+
+import math
+from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import RGBA, Doc, Field, Fraction, Image, OutputSocket, Pointwise, Position, Slider
+from .._declare import (
+    RGBA,
+    Affine,
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Fraction,
+    Image,
+    OutlineFill,
+    OutlinePlace,
+    OutputSocket,
+    Pointwise,
+    Position,
+    Size,
+    Slider,
+    SplinePoints,
+    join_points,
+    trace_spline,
+)
+
+_DROP = join_points(
+    ((0.5, 0.0), (1.0, 0.65, 0.0, -0.2, 0.0, 0.2), (0.5, 1.0, 0.28, 0.0, -0.28, 0.0), (0.0, 0.65, 0.0, 0.2, 0.0, -0.2))
+)
+"""A drop: one corner and three smooth points, so that both kinds are there to begin with."""
 
 
 class Shape(Pointwise):
-    """Draw a rectangle, an ellipse, a polygon, a star or a line: a mask, and the same filled with a color.
+    """Draw a rectangle, an ellipse, a polygon, a star, a line or a spline: a mask, and the same filled with a color.
 
     The mask is how much of each pixel the shape covers, to 2e-3. All lengths are parts of the picture's height, so the
     shape is the same at every size. The cost does not depend on the softness.
+
+    The points of the spline lie in the box of the shape: 0, 0 is its left top corner and 1, 1 its right bottom one,
+    before it turns. So center, size and rotation move the spline like all others; several splines are a `roto`.
     """
 
     aliases = (
         "rectangle", "ellipse", "circle", "square", "polygon", "star", "line", "box mask", "ellipse mask",
         "shape layer", "vignette mask", "mask", "garbage matte", "rounded rectangle", "triangle", "solid",
-        "radial mask", "polygon mask", "power window", "window",
+        "radial mask", "polygon mask", "power window", "window", "bezier", "spline", "path", "curve", "pen", "b-spline",
+        "freeform shape",
     )  # fmt: skip
 
     shape: Annotated[
-        Literal["rectangle", "ellipse", "polygon", "star", "line"],
+        Literal["rectangle", "ellipse", "polygon", "star", "line", "spline"],
         Doc(
-            "Polygon and star have corners at equal angles, the first at the top. A line runs across, with round ends."
+            "Polygon and star have corners at equal angles, the first at the top. A line runs across, with round ends. "
+            "The spline goes through points that are dragged in the viewer."
         ),
     ] = "rectangle"
     center: Annotated[Position, Doc("The middle of the shape.")] = (0.5, 0.5)
@@ -44,6 +77,13 @@ class Shape(Pointwise):
         Fraction,
         Slider(0.1, 1.0, unit="ratio", minimum=0.01, maximum=1.0, doc="Where the inner corners of a star are."),
     ] = 0.4
+    spline: Annotated[
+        SplinePoints,
+        Doc(
+            "A row for each point of the spline, in the box of the shape: x, y, the two tangents as offsets, and a "
+            "softness in addition to that of the shape, as a part of the picture's height."
+        ),
+    ] = _DROP
     softness: Annotated[
         float,
         Slider(
@@ -56,3 +96,27 @@ class Shape(Pointwise):
 
     out = OutputSocket(Image(doc="The color where the shape is, transparent elsewhere."))
     mask = OutputSocket(Field(doc="How much of each pixel the shape covers, 0..1."))
+
+    def takes_passes(self) -> bool:
+        return self.shape == "spline"
+
+    def place_spline(self, name: str, size: Size) -> Affine | None:
+        """The box of the shape, turned about its center."""
+        if self.shape != "spline":
+            return None
+        (across, down), cosine, sine = self.size, math.cos(self.rotation), math.sin(self.rotation)
+        x, y = self.center[0] * size[0], self.center[1] * size[1]
+        return (
+            cosine * across, -sine * down, x - 0.5 * (cosine * across - sine * down),
+            sine * across, cosine * down, y - 0.5 * (sine * across + cosine * down),
+        )  # fmt: skip
+
+    def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        place = self.place_spline("spline", draw.size)
+        assert place is not None
+        contour, feathers = trace_spline(self.spline, draw.size[1])
+        fill = OutlineFill(
+            ((contour,),), (OutlinePlace(0, place),), invert=self.invert, feather=self.softness, feathers=feathers
+        )
+        mask = draw.fill(draw("path_nothing", size=draw.size, result=Field(), overlap={}), [fill])
+        return {"out": draw.point("shape_fill", mask=mask, color=self.color), "mask": mask}

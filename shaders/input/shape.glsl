@@ -1,7 +1,10 @@
 // Shapes as signed distances, in pixels, below 0 inside. Distances of polygons and boxes after Quilez 2019,
 // "2D distance functions". Coverage is the mean over a grid inside of each pixel that an edge crosses.
 
+// Splines are drawn by lib/paths.glsl.
+
 #include "lib/finite.glsl"
+#include "lib/paths.glsl"
 #include "lib/pi.glsl"
 
 const int SHAPE_GRID = 24;  // samples across a pixel: coverage is within 2e-3 of clipped polygons; 16 gave 3e-3
@@ -87,3 +90,5 @@ void shape(
     mask = invert ? 1.0 - cover : cover;
     result = finite(color) * mask;
 }
+
+vec4 shape_fill(float mask, vec4 color) { return finite(color) * mask; }

@@ -16,7 +16,6 @@ from halation.nodes import (
     ColorChange,
     Drawn,
     Edge,
-    Filter,
     HostProgram,
     Image,
     Kernel,
@@ -68,7 +67,7 @@ from ..ir import (
 from ..library import Library
 from . import constants, formulas, fourier, gaussian, padding, transforms
 from .blurs import BlurBuilder
-from .node_code import check_options
+from .node_code import PassNode, check_options
 from .node_inputs import DrawnPicture, NodeInputs, NodeResources
 from .outline_drawing import OutlineDraw
 from .rasters import add_raster
@@ -81,7 +80,7 @@ class Recorder(OutlineDraw):
     def __init__(
         self,
         inputs: NodeInputs,
-        node: Filter,
+        node: PassNode,
         size: Size,
         builder: Builder,
         library: Library,

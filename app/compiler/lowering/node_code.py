@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from halation.nodes import CameraModel, Draw, Drawn, Filter, Reach, Socket, find_fault_place
+from halation.nodes import CameraModel, Draw, Drawn, Filter, Pointwise, Reach, Socket, find_fault_place
 
 from ...errors import GraphError, HalationError
 
+PassNode = Filter | Pointwise
+"""A node that is drawn in passes."""
 
-def run_passes(node: Filter, recorder: Draw, path: str) -> Drawn | Mapping[str, Drawn | CameraModel]:
+
+def run_passes(node: PassNode, recorder: Draw, path: str) -> Drawn | Mapping[str, Drawn | CameraModel]:
     """What a node draws. Raises GraphError where the code of a plug-in fails: users cannot tell it from ours."""
     try:
         return node.passes(recorder)

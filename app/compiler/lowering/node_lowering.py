@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
+from typing import Any
 
 from halation.nodes import (
     MASKED,
@@ -32,7 +33,7 @@ from . import constants, masks
 from .context import LoweringContext, PointwiseForm, find_settings
 from .draws import Recorder
 from .expand import find_stand_in
-from .node_code import run_passes
+from .node_code import PassNode, run_passes
 from .node_inputs import DrawnPicture, NodeInputs, find_cameras, takes_field
 from .pixel_shapes import follow_pixel_aspect
 from .steps import LoweringStep, field_port
@@ -110,11 +111,11 @@ class NodeLowering:
         before = inputs.inputs.get(MASKED)
         if scaled_node is not node:
             inputs = replace(inputs, node=scaled_node)
-        if isinstance(scaled_node, Pointwise):
+        if isinstance(scaled_node, Pointwise) and not scaled_node.takes_passes():
             outputs = self._lower_pointwise(inputs, scaled_node, size, step)
         else:
-            assert isinstance(scaled_node, Filter)
-            outputs = self._lower_filter(inputs, scaled_node, size, step)
+            assert isinstance(scaled_node, Filter | Pointwise)
+            outputs = self._lower_filter(inputs, self._set_wired(inputs, scaled_node, step), size, step)
         if before is not None and masks.is_masked(inputs):
             first = next(iter(outputs))
             outputs[first] = masks.add_mask(self._builder, self._pictures, inputs, before, outputs[first])
@@ -306,7 +307,23 @@ class NodeLowering:
 
     # --- filters ---------------------------------------------------------------------------------------------------
 
-    def _lower_filter(self, inputs: NodeInputs, node: Filter, size: Size, step: LoweringStep) -> dict[str, Operand]:
+    def _set_wired(self, inputs: NodeInputs, node: PassNode, step: LoweringStep) -> PassNode:
+        """The node with the numbers that drive its values. Raises GraphError for a picture: passes need numbers."""
+        numbers: dict[str, Any] = {}
+        for name, wire in inputs.wires.items():
+            if not isinstance(wire, UniformConstant):
+                raise GraphError(
+                    f"node '{inputs.path}': a picture is linked to '{name}', but at these values the node is not drawn "
+                    "pixel by pixel: unlink it",
+                    node=inputs.path,
+                )
+            value = node.declaration(name, self._context.flat.find_reference_height(inputs.path))
+            factor = unit_factor(value.unit, self._context.request.scale, step.length_height)
+            number = constants.limit_wire(wire, value, factor).value
+            numbers[name] = {"bool": bool, "int": int}.get(value.type, lambda plain: plain)(number)
+        return node.with_values(**numbers) if numbers else node
+
+    def _lower_filter(self, inputs: NodeInputs, node: PassNode, size: Size, step: LoweringStep) -> dict[str, Operand]:
         """Record the draws of a filter, on pictures that have the channels that it declares.
 
         An Image input that is fed a Field (`narrow`) keeps its one channel: the result is then a Field too.

@@ -21,6 +21,7 @@ from .splines import (
     find_chosen,
     find_list,
     find_normal,
+    find_own_outline,
     find_selected,
     list_outlines,
     measure_height,
@@ -34,7 +35,8 @@ if TYPE_CHECKING:
 def begin_move(context: ViewerContext, target: SplineTarget, *, adds: bool) -> None:
     """Select what a drag moves: a point, or with `adds` one more or one less; selected ones stay together."""
     outline = target.outline
-    context.items[str(outline.port)] = outline.name
+    if outline.items is not None:
+        context.items[str(outline.items)] = outline.name
     if target.part == "curve":
         select_points(context, outline, ())
         return
@@ -216,7 +218,7 @@ def _round(point: Row) -> Row:
 
 def can_draw(context: ViewerContext) -> bool:
     """True if the active node holds splines."""
-    return find_list(context) is not None
+    return find_list(context) is not None or find_own_outline(context) is not None
 
 
 def toggle_pen(context: ViewerContext) -> None:
@@ -244,9 +246,14 @@ def find_drawn(context: ViewerContext) -> SplineOutline | None:
     )
 
 
+def find_pen_frame(context: ViewerContext) -> SplineOutline | None:
+    """The shape in whose coordinates the pen sets the next point; None for a new one, which has not moved yet."""
+    return find_drawn(context) or (find_own_outline(context) if find_list(context) is None else None)
+
+
 def aim_pen(context: ViewerContext, start: Point, to: Point | None) -> None:
     """Keep the point that the pen sets when it is lifted: a corner, or with a drag a point with tangents."""
-    outline = find_drawn(context)
+    outline = find_pen_frame(context)
     places = (outline.from_picture(place) if outline else place for place in (start, to or start))
     place, end = places
     if place is None or end is None:
@@ -256,15 +263,25 @@ def aim_pen(context: ViewerContext, start: Point, to: Point | None) -> None:
 
 
 def lift_pen(context: ViewerContext) -> None:
-    """Add the pending point to the shape, or a new shape with it: one step of undo for each point."""
+    """Add the pending point to the shape, or a new shape with it: one step of undo for each point.
+
+    Of a node with one spline of its own, the first point takes the place of all there are.
+    """
     pen, port = context.viewer.pen, find_list(context)
     point, pen.pending = pen.pending, None
-    if point is None or port is None:
+    if point is None:
         return
     outline = find_drawn(context)
     if outline is not None:
         _change_points(context, outline, lambda points: (*points, point), mark("Add a point to {shape}"))
         select_points(context, outline, (len(outline.points),))
+        return
+
+    if port is None:
+        if (own := find_own_outline(context)) is not None:
+            _change_points(context, own, lambda _: (point,), mark("Draw {shape}"))
+            pen.shape = str(own.points_port)
+            select_points(context, own, (0,))
         return
 
     def add() -> None:

@@ -10,7 +10,7 @@ from ...language.translation import translate
 from ..theme.style import u32, ui_scale
 from .geometry import Point, Sight
 from .grips import draw_grip, is_near
-from .spline_edits import find_drawn
+from .spline_edits import find_drawn, find_pen_frame
 from .splines import SplineOutline, find_selected, list_outlines, list_tangents, place_feather
 from .strokes import BLACK, CHOSEN, SHADE, WHITE, around, draw_label, draw_path
 
@@ -30,7 +30,7 @@ def draw_splines(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) 
     if len(pen.lasso) > 1:
         draw_path(lines, [sight.place(place) for place in (*pen.lasso, pen.lasso[0])], CHOSEN, 1.0)
     if pen.pending is not None:
-        outline = find_drawn(context)
+        outline = find_pen_frame(context)
         places = [
             pen.pending[:2],
             *((pen.pending[0] + pen.pending[at], pen.pending[1] + pen.pending[at + 1]) for at in (2, 4)),

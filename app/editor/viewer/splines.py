@@ -7,14 +7,16 @@ in the file stay those of the shape before it is moved.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
 from halation.nodes import (
     ROTO_SHAPES,
+    Affine,
     ItemSet,
+    Node,
     RotoShape,
     Row,
     curve_point,
@@ -50,29 +52,29 @@ _NEAR_CURVE = 5.0
 
 @dataclass(frozen=True)
 class SplineOutline:
-    """A shape of the active node, on a picture of a size in pixels."""
+    """A spline of the active node, on a picture of a size in pixels: a shape among others, or a value of its own."""
 
-    port: Port
-    """The value that holds it."""
+    points_port: Port
+    """The value with its points."""
     name: str
-    shape: RotoShape
+    """That of the shape, or of the node."""
+    numbers: Row
+    affine: Affine
+    """From its points to pixels."""
     size: tuple[int, int]
     chosen: bool
+    items: Port | None = None
+    """The value that holds it, if it is a shape among others."""
 
     @property
     def points(self) -> tuple[Row, ...]:
         """The numbers of its points."""
-        return split_points(self.shape.points)
+        return split_points(self.numbers)
 
     @property
     def places(self) -> tuple[Point, ...]:
         """Where its points are, as fractions of the picture."""
         return tuple(self.to_picture((point[0], point[1])) for point in self.points)
-
-    @property
-    def points_port(self) -> Port:
-        """The field with its points."""
-        return Port(self.port.node, join_path(self.port.socket, self.name, "points"))
 
     @property
     def token(self) -> str:
@@ -81,13 +83,13 @@ class SplineOutline:
 
     def to_picture(self, place: Point) -> Point:
         """Where a place of the shape is, as a fraction of the picture."""
-        a, b, c, d, e, f = self.shape.find_affine(self.size, math.radians(self.shape.rotation))
+        a, b, c, d, e, f = self.affine
         x, y = place
         return (a * x + b * y + c) / self.size[0], (d * x + e * y + f) / self.size[1]
 
     def from_picture(self, place: Point) -> Point | None:
         """The place of the shape at a fraction of the picture; None if it has no size."""
-        a, b, c, d, e, f = self.shape.find_affine(self.size, math.radians(self.shape.rotation))
+        a, b, c, d, e, f = self.affine
         x, y, area = place[0] * self.size[0] - c, place[1] * self.size[1] - f, a * e - b * d
         if abs(area) < 1e-9:
             return None
@@ -116,17 +118,44 @@ def find_list(context: ViewerContext) -> Port | None:
 
 
 def list_outlines(context: ViewerContext) -> tuple[SplineOutline, ...]:
-    """The shapes of the active node at the current frame, the selected one last."""
-    port = find_list(context)
+    """The splines of the active node at the current frame, the selected one last."""
+    outlines = (*_list_own_outlines(context), *_list_shapes(context))
+    return tuple(sorted(outlines, key=lambda outline: outline.chosen))
+
+
+def _list_shapes(context: ViewerContext) -> Iterator[SplineOutline]:
+    """The named shapes of the active node."""
+    port, size = find_list(context), context.viewer.picture
     items = context.session.time.evaluated_graph.value(port) if port else None
     if port is None or not isinstance(items, ItemSet):
-        return ()
+        return
     chosen = choose_item(context.items, str(port), items)
-    outlines = (
-        SplineOutline(port, name, RotoShape(**ROTO_SHAPES.settings(item)), context.viewer.picture, name == chosen)
-        for name, item in items.items()
-    )
-    return tuple(sorted(outlines, key=lambda outline: outline.chosen))
+    for name, item in items.items():
+        shape = RotoShape(**ROTO_SHAPES.settings(item))
+        affine = shape.find_affine(size, math.radians(shape.rotation))
+        points_port = Port(port.node, join_path(port.socket, name, "points"))
+        yield SplineOutline(points_port, name, shape.points, affine, size, name == chosen, port)
+
+
+def _list_own_outlines(context: ViewerContext) -> Iterator[SplineOutline]:
+    """The splines that are values of the active node, as far as they have an effect."""
+    session, size = context.session, context.viewer.picture
+    node = session.time.evaluated_graph.nodes.get(session.active)
+    if not isinstance(node, Node) or not context.viewer.has_gizmos:
+        return
+    names = [name for name, value in node.values.items() if value.type == "spline"]
+    if not names:
+        return
+    placed = node.to_working_units(1.0, size[1], session.graph.settings.reference_height)
+    for number, name in enumerate(names):
+        affine, port = placed.place_spline(name, size), Port(session.active, name)
+        if affine is not None:
+            yield SplineOutline(port, session.active, placed.setting(name), affine, size, number == 0)
+
+
+def find_own_outline(context: ViewerContext) -> SplineOutline | None:
+    """The spline that is a value of the active node: the pen draws it anew."""
+    return next(_list_own_outlines(context), None)
 
 
 def find_spline(context: ViewerContext, sight: Sight, at: Point, scale: float) -> SplineTarget | None:

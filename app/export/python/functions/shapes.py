@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 
 from .matte import contour_distance
@@ -46,7 +48,7 @@ def shape_distance(
 
 
 def shape(
-    shape: str,
+    shape: Literal["rectangle", "ellipse", "polygon", "star", "line"],
     center: tuple[float, float],
     size: tuple[float, float],
     rotation: float,
