@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
+import traceback
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -19,14 +22,19 @@ from halation.renderer import Renderer, RenderRequest
 from halation.resources.sandbox import UNRESTRICTED
 
 WIDTH, HEIGHT = 37, 29
-PLAIN_PYTHON = """
+FOREIGN = ("halation", "moderngl", "msgspec", "cv2", "glfw")
+"""Libraries that a script may not import, whether or not they are installed."""
+
+PLAIN_PYTHON = f"""
 import runpy, sys
+
+FOREIGN = {FOREIGN!r}
 
 class NoHalation:
     def find_spec(self, name, path=None, target=None):
-        if name.partition(".")[0] not in sys.stdlib_module_names | {"numpy", "scipy", "OpenImageIO"}:
-            if name.partition(".")[0] in ("halation", "moderngl", "msgspec", "cv2", "glfw"):
-                raise ImportError(f"{name}: a script may import numpy, scipy and OpenImageIO only")
+        if name.partition(".")[0] not in sys.stdlib_module_names | {{"numpy", "scipy", "OpenImageIO"}}:
+            if name.partition(".")[0] in FOREIGN:
+                raise ImportError(name + ": a script may import numpy, scipy and OpenImageIO only")
 
 sys.meta_path.insert(0, NoHalation())
 for script, out in zip(sys.argv[1::2], sys.argv[2::2]):
@@ -136,10 +144,33 @@ def export_output(graph: Graph, name: str, path: Path) -> str:
     return path.read_text("utf-8")
 
 
-def run_scripts(pairs: list[tuple[Path, Path]]) -> None:
-    """Run scripts in a process of a plain Python."""
+def run_scripts(pairs: list[tuple[Path, Path]], is_fresh: bool = True) -> None:
+    """Run scripts in a process of a plain Python.
+
+    One that is not fresh is a copy of this process, where the system has copies: numpy, scipy and OpenImageIO, which
+    take half a second to start, are there, and Halation cannot be imported either.
+    """
     words = [str(path) for pair in pairs for path in pair]
-    subprocess.run([sys.executable, "-c", PLAIN_PYTHON, *words], check=True, timeout=600)
+    if is_fresh or sys.platform != "linux":
+        subprocess.run([sys.executable, "-c", PLAIN_PYTHON, *words], check=True, timeout=600)
+        return
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # of threads: the copy draws nothing
+        number = os.fork()
+    if number:
+        assert os.waitstatus_to_exitcode(os.waitpid(number, 0)[1]) == 0, "a script has failed: see above"
+        return
+    code = 1
+    try:
+        sys.argv = ["-c", *words]
+        for name in [name for name in sys.modules if name.partition(".")[0] in FOREIGN]:
+            del sys.modules[name]
+        exec(PLAIN_PYTHON, {})
+        code = 0
+    except BaseException:
+        traceback.print_exc()
+    finally:
+        os._exit(code)
 
 
 def load_graph(path: Path, tree: dict[str, Any]) -> Graph:

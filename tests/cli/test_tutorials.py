@@ -47,6 +47,7 @@ def test_a_tutorial(page: str, plate: str, tmp_path: Path) -> None:
         assert halation(["halation", "test"], tmp_path).returncode == 1
 
 
+@pytest.mark.nightly  # its commands have tests of their own, which pages repeat: 19 s of processor time
 def test_each_job_of_the_page_how_to(tmp_path: Path) -> None:
     follow_page("how-to.md", tmp_path)
     for name in ("relit.exr", "comp.png", "film.jpg", "toon.png", "loop.0019.png", "planet.jpg", "lens.jpg"):

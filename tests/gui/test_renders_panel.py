@@ -18,7 +18,7 @@ from halation.media import read_layer
 from halation.nodes import Kind
 from halation.resources.sandbox import UNRESTRICTED
 
-LONG = 24
+LONG = 12
 """Frames of a render that is suspended when the first is done: enough that others are left."""
 
 PRESET = next(path for path in presets.paths() if path.stem == "soft_bloom")

@@ -23,8 +23,15 @@ def read_trees() -> dict[Path, ast.Module]:
     return {path: ast.parse(path.read_text("utf-8")) for path in sorted(paths)}
 
 
+@cache
+def list_nodes(tree: ast.AST) -> tuple[ast.AST, ...]:
+    """All nodes of a tree, which each question about it goes through."""
+    return tuple(ast.walk(tree))
+
+
+@cache
 def list_functions(tree: ast.AST) -> list[Function]:
-    return [node for node in ast.walk(tree) if isinstance(node, Function)]
+    return [node for node in list_nodes(tree) if isinstance(node, Function)]
 
 
 def is_trivial(condition: ast.expr) -> bool:
@@ -50,16 +57,16 @@ def name_function(call: ast.Call) -> str:
 
 
 def calls_of(tree: ast.AST) -> list[ast.Call]:
-    return [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
+    return [node for node in list_nodes(tree) if isinstance(node, ast.Call)]
 
 
 @cache
 def asserts(function: Function) -> bool:
     """True for a function that has an assertion of its own."""
-    own = any(isinstance(node, ast.Assert) and not is_trivial(node.test) for node in ast.walk(function))
+    own = any(isinstance(node, ast.Assert) and not is_trivial(node.test) for node in list_nodes(function))
     raises = any(
         isinstance(node, ast.Raise) and node.exc is not None and "AssertionError" in ast.unparse(node.exc)
-        for node in ast.walk(function)
+        for node in list_nodes(function)
     )
     return own or raises or any(name_function(call).startswith(CHECKS) for call in calls_of(function))
 
@@ -92,7 +99,7 @@ def list_checking_helpers() -> Helpers:
 @cache
 def list_used_names(function: Function) -> tuple[frozenset[str], frozenset[str]]:
     """The names and the methods that a function uses."""
-    names = {node.id for node in ast.walk(function) if isinstance(node, ast.Name)}
+    names = {node.id for node in list_nodes(function) if isinstance(node, ast.Name)}
     names |= {argument.arg for argument in function.args.args}
     methods = {call.func.attr for call in calls_of(function) if isinstance(call.func, ast.Attribute)}
     return frozenset(names - {function.name}), frozenset(methods - {function.name})
@@ -104,7 +111,7 @@ def is_method(tree: ast.Module, function: Function) -> bool:
 
 @cache
 def list_methods(tree: ast.Module) -> frozenset[ast.stmt]:
-    return frozenset(part for node in ast.walk(tree) if isinstance(node, ast.ClassDef) for part in node.body)
+    return frozenset(part for node in list_nodes(tree) if isinstance(node, ast.ClassDef) for part in node.body)
 
 
 def uses_helper(path: Path, function: Function, checking: Helpers) -> bool:
@@ -122,7 +129,7 @@ def list_imports(path: Path) -> tuple[tuple[Path, str], ...]:
     """What a file takes from other files of the tests: the file and the name."""
     return tuple(
         (home, alias.name)
-        for node in ast.walk(read_trees()[path])
+        for node in list_nodes(read_trees()[path])
         if isinstance(node, ast.ImportFrom) and node.module
         for home in (TESTS / f"{node.module.replace('.', '/')}.py", path.parent / f"{node.module}.py")
         if home in read_trees()
@@ -175,7 +182,7 @@ def test_no_assertion_is_always_true() -> None:
     trivial = [
         f"{path.relative_to(TESTS)}:{node.lineno}: {ast.unparse(node)}"
         for path, tree in read_trees().items()
-        for node in ast.walk(tree)
+        for node in list_nodes(tree)
         if isinstance(node, ast.Assert) and is_trivial(node.test)
     ]
     assert not trivial, "\n".join(trivial)

@@ -6,9 +6,10 @@ import pytest
 from drawn_links import arrange_whole, build_scene, list_covered, list_overlaps
 from halation.authoring.edits.elements import list_decor
 from random_graphs import random_graph
+from selection import list_seeds
 
 
-@pytest.mark.parametrize("seed", range(50))
+@pytest.mark.parametrize("seed", list_seeds(daily=15, nightly=50))
 def test_no_link_runs_through_an_element_that_it_does_not_join(seed: int) -> None:
     arranged = arrange_whole(random_graph(seed, 5 + seed * 37 % 40))
     scene = build_scene(arranged)
