@@ -9,14 +9,15 @@ def pcg3d(v: np.ndarray) -> np.ndarray:
     """Hashed uint32 [..., 3] of uint32 [..., 3]."""
     with np.errstate(over="ignore"):
         v = v.astype(np.uint32) * np.uint32(1664525) + np.uint32(1013904223)
-        x, y, z = v[..., 0], v[..., 1], v[..., 2]
-        for again in (True, False):
-            x = x + y * z
-            y = y + z * x
-            z = z + x * y
-            if again:
-                x, y, z = (part ^ (part >> np.uint32(16)) for part in (x, y, z))
-    return np.stack([x, y, z], -1)
+        x, y, z = stir(v[..., 0], v[..., 1], v[..., 2])
+        return np.stack(stir(*(part ^ (part >> np.uint32(16)) for part in (x, y, z))), -1)
+
+
+def stir(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Half of the hash. As a loop in `pcg3d` it takes pyright ten seconds, which tries all kinds of numbers."""
+    x = x + y * z
+    y = y + z * x
+    return x, y, z + x * y
 
 
 def hash3(cell: tuple[object, object, object], seed: tuple[int, int, int] = (0, 0, 0)) -> np.ndarray:

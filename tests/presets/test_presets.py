@@ -270,12 +270,12 @@ def test_half_size_looks_the_same(name: str, renderer: Renderer, full: FullPictu
 @pytest.mark.parametrize(
     "name",
     [
-        pytest.param(name, marks=() if name in TIME or not number % 4 else pytest.mark.nightly)
+        pytest.param(name, marks=() if name in TIME or not number % 12 else pytest.mark.nightly)
         for number, name in enumerate(PRESETS)
     ],
 )
 def test_rendering_twice_gives_the_same_bytes(name: str, forgetful: Renderer) -> None:
-    """Every day what moves and a quarter of the others: tests/nodes/test_promises.py asks every node for it."""
+    """Every day what moves and a twelfth of the others: tests/nodes/test_promises.py asks every node for it."""
     wanted, part = RenderRequest(scale=small_scale(name)), 0.1 if name in TIME else 0.5
     first = rendered(forgetful, loaded(name), wanted, part).tobytes()
     passes = forgetful.runner.counters.passes

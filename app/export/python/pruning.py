@@ -18,7 +18,8 @@ from msgspec.structs import replace
 from .library import Definition, FunctionLibrary, find_uses
 
 _ROUNDS = 4
-"""Times that functions are pruned: each time fewer texts are passed on. No preset changes after the third time."""
+"""The most times that functions are pruned, unless nothing changes before: each time fewer texts are passed on. No
+preset changes after the third time."""
 
 
 class AskedChoices(Struct, frozen=True):
@@ -65,6 +66,8 @@ def prune(library: FunctionLibrary, names: Iterable[str], asked: AskedChoices) -
         passed = frozenset[str]().union(*(_find_passed_texts(each) for each in definitions))
         tables = {each.name: keys for each in definitions if (keys := _find_keys(ast.parse(each.text)))}
         pruned = {each.name: _Pruner(each, known[each.name], passed, defaults, tables).prune() for each in definitions}
+        if all(pruned[each.name].text == each.text for each in definitions):
+            break
         library = replace(library, definitions={**library.definitions, **pruned})
     return library
 

@@ -10,14 +10,15 @@ from .pixels import Array
 def pcg3d(cells: Array) -> Array:
     """The hash pcg3d (Jarzynski and Olano 2020) of three integers [..., 3], as 32 bits each."""
     v = np.atleast_2d(cells).astype(np.int64).astype(np.uint32) * np.uint32(1664525) + np.uint32(1013904223)
-    x, y, z = v[..., 0], v[..., 1], v[..., 2]
-    for turn in range(2):
-        x = x + y * z
-        y = y + z * x
-        z = z + x * y
-        if turn == 0:
-            x, y, z = x ^ (x >> 16), y ^ (y >> 16), z ^ (z >> 16)
-    return np.stack([x, y, z], axis=-1)
+    x, y, z = stir(v[..., 0], v[..., 1], v[..., 2])
+    return np.stack(stir(x ^ (x >> 16), y ^ (y >> 16), z ^ (z >> 16)), axis=-1)
+
+
+def stir(x: Array, y: Array, z: Array) -> tuple[Array, Array, Array]:
+    """Half of the hash: each of three integers depends on both others."""
+    x = x + y * z
+    y = y + z * x
+    return x, y, z + x * y
 
 
 def stream_of(*numbers: int) -> Array:
