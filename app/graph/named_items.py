@@ -63,7 +63,11 @@ def find_field_declaration(value: Value, item_name: str, field: str) -> Value | 
     if field == KIND:
         return _declare_kind(value.items, value.items.kinds[0].name)
     kind = value.items.by_name.get(value.default[item_name].kind)
-    return kind and kind.fields.get(field)
+    declaration = kind and kind.fields.get(field)
+    if declaration is not None and declaration.names_item:
+        others = (name for name in value.default if name != item_name)
+        return structs.replace(declaration, type="choice", choices=("", *others))
+    return declaration
 
 
 def _declare_kind(items: Items, kind: str) -> Value:
@@ -224,6 +228,7 @@ def find_item_faults(value: Value, setting: object) -> Iterator[tuple[tuple[str,
             yield (name, KIND), _explain_kind(value.items, item.kind)
         else:
             yield from _find_setting_faults(kind, name, item)
+            yield from _find_name_faults(value.items, kind, items, name)
 
 
 def _find_setting_faults(kind: ItemKind, name: str, item: NamedItem) -> Iterator[tuple[tuple[str, ...], str]]:
@@ -232,6 +237,23 @@ def _find_setting_faults(kind: ItemKind, name: str, item: NamedItem) -> Iterator
             yield (name, field), _explain_field(kind, field)
         elif fault := scalar_fault(kind.fields[field], plain):
             yield (name, field), fault
+
+
+def _find_name_faults(
+    declared: Items, kind: ItemKind, items: ItemSet, name: str
+) -> Iterator[tuple[tuple[str, ...], str]]:
+    """The fields of an item that name another one: there must be one, and it must not lead back."""
+    for field in kind.fields:
+        if not kind.fields[field].names_item:
+            continue
+        chain, other = [name], str(items[name].fields.get(field, ""))
+        if other and other not in items:
+            yield (name, field), f"there is no {declared.noun} '{make_printable(other)}'{did_you_mean(other, items)}"
+        while other in items and other not in chain:
+            chain.append(other)
+            other = str(items[other].fields.get(field, ""))
+        if other == name:
+            yield (name, field), f"it leads back to itself: {' -> '.join((*chain, name))}"
 
 
 def _explain_kind(items: Items, name: object) -> str:

@@ -84,6 +84,10 @@ class Picks(Struct, frozen=True):
     path: str = "path"
 
 
+class OfItem(Struct, frozen=True):
+    """The value is the name of another item beside the one that it belongs to, or empty. Names lead in no circle."""
+
+
 class Lines(Struct, frozen=True):
     """The value is a text of several lines: its field in interfaces has room for them."""
 
@@ -291,6 +295,8 @@ class Value(Struct, frozen=True):
     """True for a curve whose first and last point are the same place."""
     items: Items | None = None
     """What named items it can hold."""
+    names_item: bool = False
+    """True for the name of another item beside its own."""
 
     @property
     def glsl(self) -> str | None:
@@ -361,6 +367,8 @@ def read_value(name: str, hint: Any, default: Any) -> Value:
             facts |= {key: getattr(note, key) for key in ("low", "high", "minimum", "maximum", "cyclic")}
         elif isinstance(note, Items):
             facts["items"] = note
+        elif isinstance(note, OfItem):
+            facts["names_item"] = True
     return Value(**facts)
 
 

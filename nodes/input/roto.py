@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from .._declare import (
     RGBA,
+    Affine,
     Doc,
     Draw,
     Drawn,
@@ -15,12 +16,12 @@ from .._declare import (
     OutlineFill,
     OutlinePlace,
     OutputSocket,
+    PlacedRotoShape,
     RotoShape,
     RotoShapeSet,
-    Size,
     Slider,
     name_roto_shapes,
-    roto_shapes_of,
+    place_roto_shapes,
     trace_spline,
 )
 
@@ -32,6 +33,9 @@ class Roto(Filter):
     Points and tangents are fractions of the picture, so that shapes are the same at every size. A feather is measured
     from the nearest point of the spline, and a wide one costs no more than a narrow one. A spline that
     crosses itself is solid: what it runs around counts once, however often (nonzero winding), and has no edge inside.
+
+    A shape can have a parent: a transform, a track of one or two points, or another shape, also one that is off. It is
+    moved as it says itself, then as its parent is, and as the parent of that. Its motion blur is that of all of them.
     """
 
     aliases = (
@@ -72,19 +76,20 @@ class Roto(Filter):
                 mask = draw.point("roto_expose", total=mask, mask=moment, result=Field(), part=1.0 / len(masks))
         return {"out": draw.point("roto_fill", mask=mask, color=self.color), "mask": mask}
 
-    def _list_moments(self, draw: Draw) -> list[list[RotoShape]]:
+    def _list_moments(self, draw: Draw) -> list[list[PlacedRotoShape]]:
         """The outlines that count at this frame, at each time that the mask is a mean of: one, if nothing moves.
 
         The frame is asked for only where something depends on it.
         """
-        active = {name: outline for name, outline in roto_shapes_of(self.shapes).items() if outline.on}
-        if any(outline.lifetime == "range" for outline in active.values()):
-            active = {name: outline for name, outline in active.items() if outline.is_active(draw.frame)}
+        active = {name: placed for name, placed in place_roto_shapes(self.shapes, draw.size).items() if placed.shape.on}
+        if any(placed.shape.lifetime == "range" for placed in active.values()):
+            active = {name: placed for name, placed in active.items() if placed.shape.is_active(draw.frame)}
         moments = [list(active.values())]
-        if self.shutter > 0.0 and any(outline.motion_blur for outline in active.values()):
-            moved = (roto_shapes_of(draw.settings_at(time)["shapes"]) for time in self._list_times(draw.frame))
+        if self.shutter > 0.0 and any(placed.shape.motion_blur for placed in active.values()):
+            times = self._list_times(draw.frame)
+            moved = (place_roto_shapes(draw.settings_at(time)["shapes"], draw.size) for time in times)
             moments = [
-                [at[name] if outline.motion_blur else outline for name, outline in active.items()] for at in moved
+                [at[name] if placed.shape.motion_blur else placed for name, placed in active.items()] for at in moved
             ]
         return moments if any(moment != moments[0] for moment in moments) else moments[:1]
 
@@ -95,15 +100,14 @@ class Roto(Filter):
         return [start + opening * (number + 0.5) / self.samples for number in range(self.samples)]
 
 
-def _draw_mask(draw: Draw, matte: Drawn, outlines: list[RotoShape]) -> Drawn:
+def _draw_mask(draw: Draw, matte: Drawn, outlines: list[PlacedRotoShape]) -> Drawn:
     """The mask that outlines make of another one."""
-    return draw.fill(matte, [_trace(outline, draw.size) for outline in outlines]) if outlines else matte
+    return draw.fill(matte, [_trace(*placed, draw.size[1]) for placed in outlines]) if outlines else matte
 
 
-def _trace(shape: RotoShape, size: Size) -> OutlineFill:
-    """A shape, moved as it says, in pixels."""
-    contour, feathers = trace_spline(shape.points, size[1])
+def _trace(shape: RotoShape, affine: Affine, height: int) -> OutlineFill:
+    """A shape, moved as it and its parents say, in pixels."""
+    contour, feathers = trace_spline(shape.points, height)
     return OutlineFill(
-        ((contour,),), (OutlinePlace(0, shape.find_affine(size, shape.rotation)),),
-        shape.mode, shape.opacity, shape.invert, shape.feather, feathers,
-    )  # fmt: skip
+        ((contour,),), (OutlinePlace(0, affine),), shape.mode, shape.opacity, shape.invert, shape.feather, feathers
+    )

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from gui_driver import Ui
 from halation import document
-from halation.authoring.commands import AnimateValues
+from halation.authoring.commands import AddItem, AnimateValues, SetValue
 from halation.authoring.edits.element_id import ElementId
 from halation.graph import Graph, Key, Keys, Output, Port, Settings
 from halation.nodes import Kind, RotoShape, catalogue, join_points, name_roto_shapes, roto_shapes_of, split_points
@@ -254,5 +254,22 @@ def test_the_feather_of_a_point_is_dragged(gui, path: Path) -> None:
         assert points(ui)[0][:6] == (*BOX[0], 0.0, 0.0, 0.0, 0.0)
         ui.drag(f"feather {POINTS}", (x, y))
         assert points(ui)[0][6] == pytest.approx(0.0, abs=0.01)
+
+    gui(body, path)
+
+
+def test_points_are_dragged_where_a_parent_puts_them(gui, path: Path) -> None:
+    """The parent turns the square, which itself is moved by a tenth of the picture, by a half about the middle."""
+
+    def body(ui: Ui) -> None:
+        start(ui)
+        name = ui.session.apply(AddItem(PORT, "transform", {"rotation": 180.0}))
+        ui.session.apply(SetValue(Port("roto", "shapes.box.parent"), name))
+        ui.editor.items[str(PORT)] = "box"
+        ui.settled()
+        grip = ui.editor.places[f"point 0 {POINTS}"]
+        assert ((grip[0] + grip[2]) / 2, (grip[1] + grip[3]) / 2) == pytest.approx(at(ui, 0.6, 0.7), abs=1.0)
+        ui.drag(f"point 0 {POINTS}", at(ui, 0.7, 0.8))
+        assert points(ui)[0][:2] == pytest.approx((0.2, 0.2), abs=0.005)
 
     gui(body, path)

@@ -61,7 +61,7 @@ def insert_item(graph: Graph, port: Port, name: str, item: NamedItem) -> Graph:
 def drop_item(graph: Graph, port: Port, name: str) -> Graph:
     """The graph without a named item, its keys and the controls of its fields."""
     find_item(graph, port, name)
-    inside, items = f"{port.socket}.{name}.", find_items(graph, port)[1]
+    inside, (declared, items) = f"{port.socket}.{name}.", find_items(graph, port)
     dropped = [end for end in graph.animation if end.node == port.node and end.socket.startswith(inside)]
     animation = {end: animation for end, animation in graph.animation.items() if end not in dropped}
     controls = {
@@ -71,7 +71,9 @@ def drop_item(graph: Graph, port: Port, name: str) -> Graph:
     }
     extra = move_keys(graph.extra, _keep_place(port, name))
     return _put_items(
-        replace(graph, animation=animation, controls=controls, extra=extra), port, items.without_item(name)
+        replace(graph, animation=animation, controls=controls, extra=extra),
+        port,
+        _rename_in_fields(declared, items.without_item(name), name, ""),
     )
 
 
@@ -103,7 +105,8 @@ def rename_item(graph: Graph, port: Port, old: str, new: str) -> Graph:
         controls={key: aim(control) for key, control in graph.controls.items()},
         extra=move_keys(graph.extra, _keep_place(port, old), _keep_place(port, new)),
     )
-    return _put_items(moved, port, items.without_item(old).with_item(new, item))
+    renamed = items.without_item(old).with_item(new, item)
+    return _put_items(moved, port, _rename_in_fields(declared, renamed, old, new))
 
 
 def exchange_items(graph: Graph, port: Port, first: str, second: str) -> Graph:
@@ -125,6 +128,16 @@ def copy_animation(graph: Graph, port: Port, source: str, target: str) -> Graph:
         if end.node == port.node and end.socket.startswith(start)
     }
     return replace(graph, animation={**graph.animation, **copies})
+
+
+def _rename_in_fields(declared: Items, items: ItemSet, old: str, new: str) -> ItemSet:
+    """The items where fields that name one of them follow its new name, or none."""
+    changed: dict[str, NamedItem] = {}
+    for name, item in items.items():
+        for field, value in declared.by_name[item.kind].fields.items():
+            if value.names_item and item.fields.get(field) == old:
+                changed[name] = changed.get(name, item).with_field(field, new or None)
+    return items.replace(changed)
 
 
 def _put_items(graph: Graph, port: Port, items: ItemSet) -> Graph:

@@ -320,7 +320,9 @@ class NodeLowering:
             value = node.declaration(name, self._context.flat.find_reference_height(inputs.path))
             factor = unit_factor(value.unit, self._context.request.scale, step.length_height)
             number = constants.limit_wire(wire, value, factor).value
-            numbers[name] = {"bool": bool, "int": int}.get(value.type, lambda plain: plain)(number)
+            if value.type in ("bool", "int") and not isinstance(number, tuple):
+                number = bool(number) if value.type == "bool" else round(number)
+            numbers[name] = number
         return node.with_values(**numbers) if numbers else node
 
     def _lower_filter(self, inputs: NodeInputs, node: PassNode, size: Size, step: LoweringStep) -> dict[str, Operand]:

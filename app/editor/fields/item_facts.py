@@ -23,6 +23,8 @@ ICONS: Mapping[str, str] = MappingProxyType(
         "reveal": icons.ICON_FA_FILM,
         "blur": icons.ICON_FA_DROPLET,
         "smear": icons.ICON_FA_HAND_POINTER,
+        "transform": icons.ICON_FA_ARROWS_UP_DOWN_LEFT_RIGHT,
+        "track": icons.ICON_FA_LOCATION_CROSSHAIRS,
     }
 )
 """The icons of kinds of items, by their name; other kinds have a plain one."""

@@ -10,17 +10,17 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, cast
 
 from halation.nodes import (
     ROTO_SHAPES,
     Affine,
     ItemSet,
     Node,
-    RotoShape,
     Row,
     curve_point,
     list_curves,
+    place_roto_shapes,
     split_points,
 )
 
@@ -124,15 +124,16 @@ def list_outlines(context: ViewerContext) -> tuple[SplineOutline, ...]:
 
 
 def _list_shapes(context: ViewerContext) -> Iterator[SplineOutline]:
-    """The named shapes of the active node."""
-    port, size = find_list(context), context.viewer.picture
-    items = context.session.time.evaluated_graph.value(port) if port else None
-    if port is None or not isinstance(items, ItemSet):
+    """The named shapes of the active node, where they and their parents put them."""
+    session, size, port = context.session, context.viewer.picture, find_list(context)
+    node = session.time.evaluated_graph.nodes.get(port.node) if port else None
+    if port is None or not isinstance(node, Node):
         return
+    items = cast(
+        "ItemSet", node.to_working_units(1.0, size[1], session.graph.settings.reference_height).setting(port.socket)
+    )
     chosen = choose_item(context.items, str(port), items)
-    for name, item in items.items():
-        shape = RotoShape(**ROTO_SHAPES.settings(item))
-        affine = shape.find_affine(size, math.radians(shape.rotation))
+    for name, (shape, affine) in place_roto_shapes(items, size).items():
         points_port = Port(port.node, join_path(port.socket, name, "points"))
         yield SplineOutline(points_port, name, shape.points, affine, size, name == chosen, port)
 
