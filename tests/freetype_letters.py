@@ -17,13 +17,15 @@ MOST = 16384
 
 
 def draw_letters(
-    font: Path, glyphs: Iterable[tuple[int, float, float]], em: float, size: tuple[int, int]
+    font: Path, glyphs: Iterable[tuple[int, float, float]], em: float, size: tuple[int, int], weight: float = 0.0
 ) -> np.ndarray:
     """How much of each pixel glyphs cover, each by its number and the place of its origin in pixels, y down.
 
-    Where two glyphs cover parts of a pixel, the larger part counts.
+    Where two glyphs cover parts of a pixel, the larger part counts. A variable font with one axis has this `weight`.
     """
     face = freetype.Face(str(font))
+    if weight:
+        face.set_var_design_coords((weight,))
     scale = min(32, max(4, MOST // max(size)))
     width, height = size[0] * scale, size[1] * scale
     cover = np.zeros((size[1], size[0]), np.float64)

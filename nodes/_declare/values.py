@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import cached_property
+from types import MappingProxyType
 from typing import Annotated, Any, Literal, get_args, get_origin
 
 from msgspec import Struct
@@ -319,6 +320,12 @@ class Value(Struct, frozen=True):
         return self.type in ("float", "int", "bool", "color", "vector")
 
 
+_FLAGS: Mapping[type, str] = MappingProxyType(
+    {Lines: "has_lines", Folded: "folded", OfSpace: "space", OfItem: "names_item"}
+)
+"""The annotations that only say that something is so, and the field of a Value that is then true."""
+
+
 def read_value(name: str, hint: Any, default: Any) -> Value:
     """Turn `Annotated[type, Slider(...), ...] = default` into a Value."""
     base, notes = (hint.__origin__, hint.__metadata__) if get_origin(hint) is Annotated else (hint, ())
@@ -343,8 +350,6 @@ def read_value(name: str, hint: Any, default: Any) -> Value:
             facts["doc"] = note.doc or facts.get("doc", "")
         elif isinstance(note, Doc):
             facts["doc"] = note.text
-        elif isinstance(note, Lines):
-            facts["has_lines"] = True
         elif isinstance(note, Swatch):
             facts["type"] = "color"
         elif isinstance(note, Wheel):
@@ -353,10 +358,8 @@ def read_value(name: str, hint: Any, default: Any) -> Value:
             facts |= {"type": "path", "layer_by": note.layer, "holds": note.holds}
         elif isinstance(note, OfLayer):
             facts |= {"file": note.path, "role": note.role}
-        elif isinstance(note, Folded):
-            facts["folded"] = True
-        elif isinstance(note, OfSpace):
-            facts["space"] = True
+        elif type(note) in _FLAGS:
+            facts[_FLAGS[type(note)]] = True
         elif isinstance(note, Picks):
             facts |= {"file": note.path, "matte": note.layer}
         elif isinstance(note, Handle):
@@ -367,8 +370,6 @@ def read_value(name: str, hint: Any, default: Any) -> Value:
             facts |= {key: getattr(note, key) for key in ("low", "high", "minimum", "maximum", "cyclic")}
         elif isinstance(note, Items):
             facts["items"] = note
-        elif isinstance(note, OfItem):
-            facts["names_item"] = True
     return Value(**facts)
 
 

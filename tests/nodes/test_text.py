@@ -114,6 +114,21 @@ def test_weights(run):
     assert covers == sorted(covers) and covers[2] > covers[1] * 1.3
 
 
+@pytest.mark.parametrize("weight", [100.0, 370.0, 900.0])
+@pytest.mark.parametrize("em", [21.0, 120.0])
+def test_contours_of_a_variable_font_may_overlap(run, em, weight):
+    """Without seams where they do. FreeType leaves some, of one of its pixels: 32 of them are one of ours."""
+    font, size = DATA / "overlapping_variable.ttf", (int(em), int(1.2 * em))
+    node = Text(
+        text="H", font=str(font), weight=weight, size=em / size[1], align="left", vertical="baseline",
+        anchor=(0.1, 0.9),
+    )  # fmt: skip
+    drawn = matte(run, node, size)
+    reference = draw_letters(font, [(1, 0.1 * size[0], 0.9 * size[1])], em, size, weight)
+    np.testing.assert_allclose(drawn, reference, atol=LEAST)
+    assert reference.sum() > 0.1 * em**2
+
+
 def test_faults_are_sentences(run, tmp_path):
     broken = tmp_path / "broken.ttf"
     broken.write_bytes(DEJAVU.read_bytes()[:3000])
