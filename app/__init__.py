@@ -38,11 +38,11 @@ __version__ = VERSION
 def load(path: str | Path) -> Graph:
     """The graph in a JSON file, or a preset by its name. Raises DocumentError with the JSON path of a fault."""
     from . import document
-    from .custom_nodes.plugins import find_graph_or_preset
+    from .document.locating import locate_graph
     from .resources.sandbox import read_process_sandbox
     from .scripting.arguments import check_path
 
-    return document.load(find_graph_or_preset(check_path("path", path)), sandbox=read_process_sandbox())
+    return document.load(locate_graph(check_path("path", path)), sandbox=read_process_sandbox())
 
 
 def connect(socket: str | Path | None = None) -> ServiceConnection:

@@ -97,16 +97,15 @@ Root = Annotated[
 
 
 def locate_graph(text: str) -> Path:
-    """The graph file that the user named by its path, or a preset by its name; a file wins.
+    """The graph file that the user named by its path, or a preset by its name; "-" is standard input.
 
     Raises DocumentError with a suggestion for a name that is neither.
     """
-    path = expand_preset(text)
-    if text != "-" and not os.path.lexists(path) and (hint := _preset_hint(path)):
-        from ..errors import DocumentError
+    if text == "-" or os.path.lexists(text):
+        return Path(text)
+    from ..document import locating
 
-        raise DocumentError(text, "", f"there is no such file{hint}", rule="unreadable-graph")
-    return path
+    return locating.locate_graph(text)
 
 
 def expand_preset(text: str) -> Path:
@@ -114,18 +113,6 @@ def expand_preset(text: str) -> Path:
     from ..custom_nodes.plugins import find_graph_or_preset
 
     return find_graph_or_preset(text)
-
-
-def _preset_hint(path: Path) -> str:
-    """How to name the preset that the user may mean by a path where nothing is, or ""."""
-    from ..custom_nodes.plugins import find_preset, name_presets
-    from ..graph import did_you_mean
-
-    if path.suffix.lower() == ".json":
-        return f"; for the preset write {path.stem}" if find_preset(path.stem) else ""
-    is_name = path.name == str(path) and path.name.replace(".", "_").isidentifier()
-    hint = did_you_mean(path.name, name_presets()) or "; halation demo --list prints them"
-    return f", and no preset has this name{hint}" if is_name else ""
 
 
 GraphFile = Annotated[
@@ -233,7 +220,17 @@ def resolve_inputs(graph: Graph, inputs: Mapping[str, str]) -> dict[str, str]:
         if name not in graph.inputs:
             hint = did_you_mean(name, graph.inputs) or "; it has none"
             raise UsageError(f"-i {name}={file}: the graph has no input '{name}'{hint}")
+        if _is_number(file) and not Path(file).exists():
+            raise UsageError(f"-i {name}={file}: an input takes a file; set a number with --set NODE.VALUE={file}")
     return files
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
 def choose_output(graph: Graph, show: str, node: str) -> str:

@@ -67,6 +67,7 @@ def test_an_input_that_nobody_filled(fails, graphs):
     [
         (("-i", "beuaty=a.exr"), "-i beuaty=a.exr: the graph has no input 'beuaty'; did you mean 'beauty'?"),
         (("-i", "beauty="), "-i beauty=: write -i NAME=VALUE"),
+        (("-i", "beauty=0.5"), "-i beauty=0.5: an input takes a file; set a number with --set NODE.VALUE=0.5"),
         (("-i", "beauty=a.exr", "-i", "beauty=b.exr"), "-i beauty=b.exr: 'beauty' is given twice"),
     ],
 )

@@ -100,6 +100,9 @@ def test_a_file_of_that_name_wins(cli, empty, graphs):
 def test_what_is_neither_is_explained(fails, empty, word, hint):
     sentence = fails(3, "render", word)
     assert sentence.startswith(f"{word}: there is no such file") and sentence.endswith(hint)
+    with pytest.raises(DocumentError) as fault:
+        hal.load(word)
+    assert str(fault.value) == sentence
 
 
 def test_names_of_files_are_left_alone(fails, empty):

@@ -1,0 +1,30 @@
+"""Finds the graph that a user names: a file, or a preset by its name."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from ..custom_nodes.plugins import find_graph_or_preset, find_preset, name_presets
+from ..errors import DocumentError
+from ..graph import did_you_mean
+
+
+def locate_graph(name: str | Path) -> Path:
+    """The file of `find_graph_or_preset`, which is there, or is a path whose reader says that nothing is there.
+
+    Raises DocumentError with a suggestion where the name of a preset or a preset's file may be meant.
+    """
+    path = find_graph_or_preset(name)
+    if not os.path.lexists(path) and (hint := _suggest_preset(path)):
+        raise DocumentError(str(name), "", f"there is no such file{hint}", rule="unreadable-graph")
+    return path
+
+
+def _suggest_preset(path: Path) -> str:
+    """How to name the preset that the user may mean by a path where nothing is, or ""."""
+    if path.suffix.lower() == ".json":
+        return f"; for the preset write {path.stem}" if find_preset(path.stem) else ""
+    is_name = path.name == str(path) and path.name.replace(".", "_").isidentifier()
+    hint = did_you_mean(path.name, name_presets()) or "; halation demo --list prints them"
+    return f", and no preset has this name{hint}" if is_name else ""
