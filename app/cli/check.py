@@ -91,8 +91,8 @@ def _check_and_print(checker: GraphChecker, graphs: Sequence[Path], quiet: bool)
             is_read = problem.rule.name != "unreadable-graph"
             place = f"{path}:{finding.line}" if is_read else path
             print(f"{place}: {problem.severity}: {sentence} [{problem.rule.name}]", *excerpt, sep="\n")
-        if report.omitted and not quiet:
-            print(f"{path}: and {report.omitted} more")
+        if report.more and not quiet:
+            print(f"{path}: {len(report.findings):,} findings are listed, there may be more")
         if not quiet and not report.findings and is_named:
             print(f"{path}: ok")
     if not reports:
@@ -100,10 +100,8 @@ def _check_and_print(checker: GraphChecker, graphs: Sequence[Path], quiet: bool)
     elif (len(reports) > 1 or not is_named) and not quiet:
         severities = [finding.problem.severity for report in reports for finding in report.findings]
         counts = [write_count(severities.count(word), word) for word in ("error", "warning")]
-        omitted = sum(report.omitted for report in reports)
-        print_note(
-            f"{write_count(len(reports), 'graph')}: {', '.join(counts)}{f', and {omitted} more' if omitted else ''}"
-        )
+        more = ", and there may be more" if any(report.more for report in reports) else ""
+        print_note(f"{write_count(len(reports), 'graph')}: {', '.join(counts)}{more}")
     return reports
 
 
@@ -138,7 +136,7 @@ def _report_facts(report: CheckReport, strict: bool) -> dict[str, Any]:
         "graph": report.file,
         "exit_code": _exit_code(report, strict),
         "problems": [finding.facts for finding in report.findings],
-        **({"omitted": report.omitted} if report.omitted else {}),
+        **({"more": True} if report.more else {}),
     }
 
 

@@ -50,7 +50,8 @@ def fmt(
         return _format_input(name, check, sandbox=sandbox)
     # All files are read before the first is written: an invalid file leaves all of them as they are.
     formatted = {
-        path: document.dumps(document.load(path, sandbox=sandbox)) for path in find_graphs(graphs, sandbox=sandbox)
+        path: document.dump_readable(document.load(path, sandbox=sandbox), str(path))
+        for path in find_graphs(graphs, sandbox=sandbox)
     }
     changed = [path for path, text in formatted.items() if read_bytes(path, sandbox) != text.encode()]
     for path in changed if not check else ():
@@ -70,9 +71,8 @@ def _format_input(name: str, check: bool, sandbox: Sandbox) -> int:
     from .. import document
 
     text = read_standard_input()
-    formatted = document.dumps(
-        document.loads(text, name or "-", str(Path(name).parent) if name else "", sandbox=sandbox)
-    )
+    graph = document.loads(text, name or "-", str(Path(name).parent) if name else "", sandbox=sandbox)
+    formatted = document.dump_readable(graph, name or "-")
     if not check:
         sys.stdout.buffer.write(formatted.encode())
     return 1 if check and text != formatted else 0

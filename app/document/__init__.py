@@ -4,6 +4,6 @@ from __future__ import annotations
 
 from .migrations import FORMAT, MIGRATIONS
 from .reading import load, loads
-from .writing import dumps, find_first_difference, save
+from .writing import dump_readable, dumps, find_first_difference, save
 
-__all__ = ["FORMAT", "MIGRATIONS", "dumps", "find_first_difference", "load", "loads", "save"]
+__all__ = ["FORMAT", "MIGRATIONS", "dump_readable", "dumps", "find_first_difference", "load", "loads", "save"]

@@ -17,13 +17,13 @@ a link to a missing node, is no fault of reading: `graph.problems` finds it, so 
 
 from __future__ import annotations
 
+import builtins
 from collections.abc import Mapping
-from functools import reduce
 from pathlib import Path
 from typing import Any, cast, get_args
 
 import msgspec
-from halation.nodes import ColorSettings, LengthUnits, Node, Plain, Value, catalogue, length_unit_fault
+from halation.nodes import ColorSettings, Node, Plain, Value, catalogue
 from msgspec import Struct, field
 
 from ..custom_nodes import Code, CodeFault, Language, node_type
@@ -34,9 +34,8 @@ from ..graph.expressions import Expression
 from ..graph.graph import find_setting
 from ..graph.length_units import make_node
 from ..graph.model import MAX_GROUP_DEPTH
-from ..graph.named_items import find_item_faults, split_unknown
-from ..graph.names import did_you_mean, find_name_fault, name_fault
-from ..graph.values import coerce, describe_type
+from ..graph.named_items import split_unknown
+from ..graph.names import find_name_fault, name_fault
 from ..resources.sandbox import Sandbox
 from . import limits, records
 from .animation import read_animation
@@ -46,15 +45,13 @@ from .migrations import MIGRATIONS, Migration, migrate, newest
 from .records import convert, read_type, unknown_keys
 from .syntax import member, parse, word
 from .tally import PartTally
+from .values import DAMAGED, convert_value, read_units, upgrade_values
 
 Types = Mapping[str, type[Node]]
 Migrations = Mapping[int, Migration]
 Extra = dict[str, Mapping[str, Any]]
 
 _LANGUAGES = frozenset(get_args(Language))
-
-_DAMAGED = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
-"""Exceptions that a migration may raise if the old file is damaged."""
 
 
 def load(
@@ -97,6 +94,18 @@ class _DocumentLoader(Struct):
     code: CodeTally = field(default_factory=CodeTally)
     parts: PartTally = field(default_factory=PartTally)
     expressions: dict[str, Expression] = field(default_factory=dict[str, Expression])  # each text is parsed once
+    kinds: dict[str, type[Node] | None] = field(default_factory=dict[str, "type[Node] | None"])
+    """What `find_kind` found."""
+
+    def find_kind(self, type: str) -> builtins.type[Node] | None:
+        """The node type of a name in the catalogue, which is asked once for each name; None if there is none."""
+        if type not in self.kinds:
+            self.kinds[type] = self.types.get(type)
+        return self.kinds[type]
+
+    def is_known(self, type: str) -> bool:
+        """False for the type of a node that is kept as it is."""
+        return type == "group" or type in _LANGUAGES or self.find_kind(type) is not None
 
     def load_file(self, path: Path, sandbox: Sandbox, outer: tuple[Path, ...] = ()) -> tuple[Graph, int]:
         """The graph in a file, and how many nodes it has when all groups are expanded."""
@@ -118,7 +127,7 @@ class _DocumentLoader(Struct):
             raise DocumentError(file, "halation", _newer(f"format {format}", newest_format), rule="newer-version")
         try:
             raw = migrate(raw, format, self.migrations)
-        except _DAMAGED:
+        except DAMAGED:
             fault = f"the file is damaged: it says format {format}, but cannot be brought to format {newest_format}"
             raise DocumentError(file, "halation", fault) from None
         return _BodyReader(self, file, folder, outer).read_graph(raw, "", len(outer))
@@ -127,21 +136,22 @@ class _DocumentLoader(Struct):
 class _BodyReader(Struct):
     """Reads a body. `file` begins messages, and relative paths start at `folder`.
 
-    `outer` are the files around it and its own, `extra` collects unknown keys.
+    `outer` are the files around it and its own, `at` is its JSON path, `extra` collects unknown keys.
     """
 
     loading: _DocumentLoader
     file: str
     folder: str
     outer: tuple[Path, ...]
+    at: str = ""
     extra: Extra = field(default_factory=Extra)
 
     def read_graph(self, raw: dict[str, Any], at: str, depth: int) -> tuple[Graph, int]:
         """The graph at JSON path `at`, and its number of nodes."""
-        reader = _BodyReader(self.loading, self.file, self.folder, self.outer)
+        reader = _BodyReader(self.loading, self.file, self.folder, self.outer, at)
         record = convert(raw, records.GraphRecord, self.file, at)
         reader.keep_unknown("", raw, records.GraphRecord)
-        if refusal := self.loading.parts.add(record):
+        if refusal := self.loading.parts.add(record, self.loading.is_known):
             raise DocumentError(self.file, member(at, refusal[0]), refusal[1])
         settings = convert(record.settings, records.SettingsRecord, self.file, member(at, "settings"))
         reader.keep_unknown("settings", record.settings, records.SettingsRecord)
@@ -155,8 +165,7 @@ class _BodyReader(Struct):
             nodes[id], number, is_muted = reader.read_entry(id, node, section, depth)
             count += number
             if count > limits.MAX_NODES:
-                fault = f"with all groups there are more than {limits.MAX_NODES} nodes"
-                raise DocumentError(self.file, member(section, id), fault)
+                raise DocumentError(self.file, member(section, id), limits.refuse_nodes())
             if is_muted:
                 muted.add(id)
         graph = Graph(
@@ -186,7 +195,13 @@ class _BodyReader(Struct):
     def keep_unknown(self, path: str, raw: Mapping[str, Any], kind: records.RecordType) -> None:
         """Keep the unknown keys of the object at `path` (inside this graph), so that they are saved again."""
         if keys := unknown_keys(raw, kind):
-            self.extra[path] = keys
+            self.keep(path, keys)
+
+    def keep(self, path: str, keys: dict[str, Any]) -> None:
+        """Keep keys of the object at `path`. Raises DocumentError for too many."""
+        if fault := self.loading.parts.keep(keys):
+            raise DocumentError(self.file, member(self.at, path) if path else self.at, fault)
+        self.extra[path] = keys
 
     def entry_path(self, section: str, name: str, kind: str) -> str:
         """The JSON path of an entry of the section at this path. Raises DocumentError for an invalid name."""
@@ -258,39 +273,41 @@ class _BodyReader(Struct):
         if (node := self.loading.shared.get(text := msgspec.json.encode(raw))) is not None:
             return node[0], 1, node[1]
         at, unknown_count = member(section, id), len(self.extra)
-        common = convert(raw, records.TypeRecord, self.file, at)
-        item, count = self.read_item(id, raw, common.type, at, depth)
-        if common.type not in _LANGUAGES and not isinstance(item, Group) and len(self.extra) == unknown_count:
-            self.loading.shared[text] = item, common.muted
-        return item, count, common.muted
+        type = cast("dict[str, Any]", raw).get("type") if isinstance(raw, dict) else None
+        if isinstance(type, str) and (kind := self.loading.find_kind(type)):
+            record, count = convert(raw, records.NodeRecord, self.file, at), 1
+            self.keep_unknown(f"nodes.{id}", raw, records.NodeRecord)
+            item: Item = self.read_node(id, kind, record, at)
+        else:
+            record = convert(raw, records.TypeRecord, self.file, at)
+            item, count = self.read_item(id, raw, record.type, at, depth)
+        if record.type not in _LANGUAGES and not isinstance(item, Group) and len(self.extra) == unknown_count:
+            self.loading.shared[text] = item, record.muted
+        return item, count, record.muted
 
     def read_item(self, id: str, raw: dict[str, Any], type: str, at: str, depth: int) -> tuple[Item, int]:
-        """A node, and how many nodes it has when groups are expanded."""
+        """A node of no type of the catalogue, and how many nodes it has when groups are expanded."""
         reads_files = self.loading.sandbox is not None
         if type == "group" and (reads_files or not raw.get("path")):
             return self.read_group(id, raw, at, depth)
         if type in _LANGUAGES and (reads_files or not raw.get("file")):
             return self.read_code_node(id, raw, cast("Language", type), at), 1
-        if type not in self.loading.types:
-            return Unknown(type, unknown_keys(raw, records.TypeRecord)), 1
-        self.keep_unknown(f"nodes.{id}", raw, records.NodeRecord)
-        return self.read_node(id, self.loading.types[type], convert(raw, records.NodeRecord, self.file, at), at), 1
+        kept = unknown_keys(raw, records.TypeRecord)
+        if fault := self.loading.parts.keep(kept, is_node=True):
+            raise DocumentError(self.file, at, fault)
+        return Unknown(type, kept), 1
 
     def read_node(self, id: str, kind: type[Node], record: records.NodeRecord, at: str) -> Node:
         """A node of a known type, its values brought up to its present version."""
         if record.version > kind.version:
             fault = _newer(f"version {record.version} of '{kind.id}'", kind.version)
             raise DocumentError(self.file, member(at, "version"), fault, rule="newer-version")
-        values = dict(record.values)
-        try:
-            for version in range(record.version, kind.version):
-                values = dict(kind.upgrade(version, values))
-        except _DAMAGED:
-            fault = f"the values do not fit version {record.version} of '{kind.id}': correct them, or remove the node"
-            raise DocumentError(self.file, member(at, "values"), fault) from None
+        if (record.values or record.units) and (refusal := self.loading.parts.add_values(kind.values, record)):
+            raise DocumentError(self.file, member(at, refusal[0]), refusal[1])
+        values = upgrade_values(kind, record, self.file, at)
         if record.package and (record.version == kind.version or not kind.required_package):
             self.keep_package(id, record.package, kind)
-        units = self.read_units(record.units, kind.values, at)
+        units = read_units(record.units, kind.values, self.file, at)
         return make_node(kind, self.read_values(f"nodes.{id}", values, kind.values, at), units)
 
     def keep_package(self, id: str, package: str, kind: type[Node]) -> None:
@@ -313,20 +330,8 @@ class _BodyReader(Struct):
             reason = f"{record.file or 'its code'}, {fault}" if fault.line else str(fault)
             return Unknown(language, unknown_keys(raw, records.TypeRecord), reason)
         self.keep_unknown(f"nodes.{id}", raw, records.CodeRecord)
-        units = self.read_units(record.units, kind.values, at)
+        units = read_units(record.units, kind.values, self.file, at)
         return make_node(kind, self.read_values(f"nodes.{id}", record.values, kind.values, at), units)
-
-    def read_units(self, raw: Mapping[str, str], declared: Mapping[str, Value], at: str) -> LengthUnits:
-        """The units of lengths. Raises DocumentError for a value that is no length, and for an unknown unit."""
-        for name, unit in raw.items():
-            fault = (
-                length_unit_fault(declared[name], unit)
-                if name in declared
-                else f"there is no value '{name}'{did_you_mean(name, declared)}"
-            )
-            if fault:
-                raise DocumentError(self.file, member(member(at, "units"), name), fault)
-        return tuple(sorted(raw.items()))
 
     def find_code(self, record: records.CodeRecord, language: Language) -> Code:
         """The code in a record, or in the file that it names. Raises CodeFault."""
@@ -343,25 +348,17 @@ class _BodyReader(Struct):
                 if declared[name].items and isinstance(setting, dict):
                     objects = cast("dict[str, Any]", setting)
                     setting = self.keep_unknown_fields(f"{path}.values.{name}", declared[name], objects)
-                plain = coerce(declared[name], setting)
-                if plain is None:
-                    where = member(member(at, "values"), name)
-                    fault = f"expected {describe_type(declared[name])}, got {word(setting)}"
-                    for place, sentence in find_item_faults(declared[name], setting) if declared[name].items else ():
-                        where = reduce(member, place, where)
-                        fault = sentence if isinstance(setting, dict) else fault
-                        break
-                    raise DocumentError(self.file, where, fault)
-                values[name] = plain
-        if unknown := {name: setting for name, setting in raw.items() if name not in declared}:
-            self.extra[f"{path}.values"] = unknown
+                values[name] = convert_value(declared[name], setting, self.file, at)
+        if len(values) < len(raw):
+            self.keep(f"{path}.values", {name: setting for name, setting in raw.items() if name not in declared})
         return values
 
     def keep_unknown_fields(self, path: str, value: Value, objects: dict[str, Any]) -> dict[str, Any]:
         """Named items without the kinds and fields that this version does not know, which are saved again."""
         assert value.items is not None
         known, unknown = split_unknown(value.items, objects)
-        self.extra |= {".".join((path, *place)): keys for place, keys in unknown.items()}
+        for place, keys in unknown.items():
+            self.keep(".".join((path, *place)), keys)
         return known
 
     def read_group(self, id: str, raw: dict[str, Any], at: str, depth: int) -> tuple[Group, int]:
@@ -377,7 +374,7 @@ class _BodyReader(Struct):
         else:
             graph, count = self.read_graph(record.graph or {}, member(at, "graph"), depth + 1)
         values = self.read_values(f"nodes.{id}", record.values, signature(Group(graph)).values, at)
-        return Group(graph, record.path or "", values), count + 1
+        return Group(graph, record.path or "", values), count + limits.GROUP_COST
 
     def read_group_file(self, path: str, at: str) -> tuple[Graph, int]:
         """The graph in a group's file."""

@@ -164,7 +164,13 @@ def convert(raw: Any, kind: type[R], file: str, path: str) -> R:
 
 def unknown_keys(raw: Mapping[str, Any], kind: RecordType) -> dict[str, Any]:
     """The entries of `raw` besides the fields of a record."""
-    return {key: part for key, part in raw.items() if key not in kind.__struct_fields__}
+    fields = _list_fields(kind)
+    return {} if raw.keys() <= fields else {key: part for key, part in raw.items() if key not in fields}
+
+
+@cache
+def _list_fields(kind: RecordType) -> frozenset[str]:
+    return frozenset(kind.__struct_fields__)
 
 
 def type_name(kind: Kind, width: int) -> str:

@@ -1,7 +1,8 @@
 """Text -> JSON tree, stricter than JSON: no key twice, no NaN, limited depth; every fault has its JSON path.
 
-Size, number of parts and depth are counted in the text, before anything is made of it. Then the whole tree is walked
-only where something in the text looks like a fault: a walk takes longer than all the rest.
+Size, number of parts and depth are counted in the text, before anything is made of it. For that the text is cut at its
+quotes, which takes a tenth of the time of a regular expression. The tree is walked only where something in the text
+looks like a fault: a walk takes longer than all the rest.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import json
 import re
 import sys
+from collections.abc import Sequence
 from functools import partial, reduce
 from itertools import accumulate
 from typing import Any, NamedTuple, cast
@@ -19,17 +21,20 @@ from ..errors import DocumentError
 from .limits import MAX_KEY, MAX_NESTING, MAX_PARTS, size_fault
 from .syntax_faults import explain_syntax
 
-_STRING = re.compile(r'"(?:[^"\\]++|\\.)*+"?', re.DOTALL)
-_NO_BRACKET = re.compile(r"[^{}\[\]]++")
 _LARGE_NUMBER = re.compile(r"NaN|Infinity|[eE]\+?\d{3}|\d{200}")
 """Texts that may be a number that is not finite."""
+_MANY_DIGITS, _LONG = re.compile(r"\d{200}"), 200
+"""What msgspec reads although it may be larger than any number of 64 bits, and the least letters that it has."""
 _ESCAPED_HALF = re.compile(r"\\u[dD][89a-fA-F]")
 _HALF = re.compile(r"[\ud800-\udfff]")
 """Texts that may be half of a surrogate pair."""
-_STEPS = {"{": 1, "[": 1, "}": -1, "]": -1}
+_STEPS = {ord("{"): 1, ord("["): 1, ord("}"): -1, ord("]"): -1}
+_NO_BRACKETS = bytes(set(range(256)) - {*_STEPS})
 
 _NO_END_OF_KEY = (b'\\":', b':":', b',":', b'[":', b'{":')
 """Where a quote and a colon may be part of a string."""
+_MAX_QUOTES = 4 * MAX_PARTS + 4
+"""Quotes of a text that has no more parts than a file may: each has a key and a string at most."""
 
 
 class Trail(NamedTuple):
@@ -49,11 +54,16 @@ def parse(text: str, file: str) -> dict[str, Any]:
     """The object that `text` holds. Raises DocumentError."""
     if fault := size_fault(len(text.strip())):
         raise DocumentError(file, "", fault, rule="unreadable-graph")
-    outline = _STRING.sub("", text)
+    plain_text = text.replace("\\\\", "__").replace('\\"', "__") if "\\" in text else text
+    if plain_text.count('"') > _MAX_QUOTES:
+        raise DocumentError(file, "", _refuse_parts())
+    pieces = plain_text.split('"')  # each second one is a string
+    outline = "".join(pieces[::2])
     if fault := _shape_fault(outline):
         raise DocumentError(file, "", fault)
-    if plain_tree := _parse_plain(text, outline):
+    if plain_tree := _parse_plain(text, pieces, outline):
         return plain_tree
+    del pieces
     odd_objects: list[_Twice] = []
     try:
         tree: Any = json.loads(text, object_pairs_hook=partial(_make_object, odd_objects))
@@ -71,13 +81,16 @@ def parse(text: str, file: str) -> dict[str, Any]:
     return cast("dict[str, Any]", tree)
 
 
-def _parse_plain(text: str, outline: str) -> dict[str, Any] | None:
+def _parse_plain(text: str, pieces: Sequence[str], outline: str) -> dict[str, Any] | None:
     """The object that `text` holds, if it has no fault; None if it may have one, which costs a slower look at it.
 
-    msgspec reads in a fifth of the time. Of a key that is there twice it takes the last one: the tree, written again,
-    then has fewer colons than the text.
+    `pieces` are what is between its quotes. msgspec reads in a fifth of the time, and refuses numbers that are not
+    finite. Of a key that is there twice it takes the last one: the tree, written again, then has fewer colons than the
+    text.
     """
-    if _is_suspect(text, outline) or max(map(len, text.split('"'))) > MAX_KEY:
+    if max(map(len, pieces)) >= _LONG and (_has_long_key(pieces) or _MANY_DIGITS.search(outline)):
+        return None
+    if _has_half(text):
         return None
     try:
         tree = msgspec.json.decode(text)
@@ -87,6 +100,12 @@ def _parse_plain(text: str, outline: str) -> dict[str, Any] | None:
     if any(odd in written for odd in _NO_END_OF_KEY) or written.count(b'":') != outline.count(":"):
         return None
     return cast("dict[str, Any]", tree) if isinstance(tree, dict) else None
+
+
+def _has_long_key(pieces: Sequence[str]) -> bool:
+    """True if a string before a colon may be longer than a key may be. `pieces` are what is between quotes."""
+    long = [place for place, piece in enumerate(pieces) if len(piece) > MAX_KEY]
+    return any(place % 2 and pieces[place + 1 : place + 2] and pieces[place + 1].lstrip()[:1] == ":" for place in long)
 
 
 def member(path: str, key: str | int) -> str:
@@ -125,7 +144,12 @@ def spell_path(trail: Trail | None) -> str:
 
 def _is_suspect(text: str, outline: str) -> bool:
     """True if a part of a text may be no finite number, or no valid Unicode. `outline` is the text without strings."""
-    if _LARGE_NUMBER.search(outline) or ("\\u" in text and _ESCAPED_HALF.search(text)):
+    return _LARGE_NUMBER.search(outline) is not None or _has_half(text)
+
+
+def _has_half(text: str) -> bool:
+    """True if half of a surrogate pair may be in a text."""
+    if "\\u" in text and _ESCAPED_HALF.search(text):
         return True
     return not text.isascii() and _HALF.search(text) is not None
 
@@ -134,13 +158,17 @@ def _shape_fault(outline: str) -> str | None:
     """Why a text of that many parts and that depth is refused, or None. `outline` is the text without strings."""
     brackets = outline.count("[") + outline.count("{")
     if brackets + outline.count(",") > MAX_PARTS:
-        return f"it has more than {MAX_PARTS:,} parts; that is no graph"
+        return _refuse_parts()
     if brackets <= MAX_NESTING:
         return None
-    steps = map(_STEPS.__getitem__, _NO_BRACKET.sub("", outline))
-    if max(accumulate(steps), default=0) > MAX_NESTING:
+    steps = outline.encode(errors="replace").translate(None, _NO_BRACKETS)
+    if max(accumulate(map(_STEPS.__getitem__, steps)), default=0) > MAX_NESTING:
         return f"objects and lists nest deeper than {MAX_NESTING}; that is no graph"
     return None
+
+
+def _refuse_parts() -> str:
+    return f"it has more than {MAX_PARTS:,} parts; that is no graph"
 
 
 def _make_object(odd_objects: list[_Twice], pairs: list[tuple[str, Any]]) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from typing import Any
 from halation.nodes import ItemSet, Plain, Value
 
 from ..custom_nodes import CustomNode
-from ..errors import GraphError, OutputError
+from ..errors import DocumentError, GraphError, OutputError
 from ..graph import Control, Graph, Group, Input, Item, Output, Port, Settings, Unknown, find_declaration, signature
 from ..graph.named_items import describe_items
 from ..graph.names import find_name_fault
@@ -24,11 +24,12 @@ from ..graph.scalars import describe_scalar
 from ..graph.values import coerce, describe_type
 from ..resources.atomic_write import write_text_atomically
 from ..resources.sandbox import Sandbox
+from . import limits
 from .animation import describe_animation
 from .canonical import pretty, write_parts
 from .code import describe_code
-from .limits import size_fault
 from .migrations import FORMAT
+from .reading import loads
 from .records import type_name
 
 Section = dict[str, Any]
@@ -90,12 +91,37 @@ def find_first_difference(graph: Graph, text: str) -> int | None:
 def save(graph: Graph, path: str | Path, sandbox: Sandbox) -> None:
     """Write a graph, whole or not at all: after any failure the old file is still there.
 
-    Raises OutputError, or GraphError as `dumps` does.
+    Raises OutputError, also for a graph that could not be read again, or GraphError as `dumps` does.
+    """
+    write_text_atomically(Path(path), dump_readable(graph, str(path)), sandbox=sandbox)
+
+
+def dump_readable(graph: Graph, file: str) -> str:
+    """The canonical text of a graph for a file. Raises OutputError if it could not be read again from there.
+
+    So it is read. Files of groups are not, since one that is missing does not keep the graph from being saved: their
+    nodes are counted as they are now.
     """
     text = dumps(graph)
-    if fault := size_fault(len(text.encode())):
-        raise OutputError(f"{path}: it is not saved, because it could not be read again: {fault}")
-    write_text_atomically(Path(path), text, sandbox=sandbox)
+    fault = limits.size_fault(len(text.encode()))
+    if not fault and _count_nodes(graph, {}) > limits.MAX_NODES:
+        fault = limits.refuse_nodes()
+    if not fault:
+        try:
+            loads(text, file, sandbox=None)
+        except DocumentError as refusal:
+            fault = ": ".join(filter(None, (refusal.path, refusal.fault)))
+    if fault:
+        raise OutputError(f"{file}: it is not saved, because it could not be read again: {fault}")
+    return text
+
+
+def _count_nodes(graph: Graph, known: dict[int, int]) -> int:
+    """The nodes of a graph when all groups are expanded, as `reading` counts them; equal bodies are counted once."""
+    if id(graph) not in known:
+        groups = (item.graph for item in graph.nodes.values() if isinstance(item, Group))
+        known[id(graph)] = len(graph.nodes) + sum(limits.GROUP_COST - 1 + _count_nodes(body, known) for body in groups)
+    return known[id(graph)]
 
 
 def _document(graph: Graph) -> Section:

@@ -14,6 +14,7 @@ from ..errors import GraphError
 from ..resources.record import Record
 from ..resources.suggestions import limit_suggestions
 from . import rules
+from .enough import Enough
 from .evaluate_at_frame import animation_fault, find_expression_loops
 from .graph import Graph, Group, Item, find_setting, signature
 from .model import MAX_GROUP_DEPTH, Input, Port, Unknown
@@ -59,21 +60,24 @@ class Problem(Record, frozen=True):
 
 
 def problems(graph: Graph, node_types: Mapping[str, type[Node]] | None = None) -> tuple[Problem, ...]:
-    """Everything that is wrong, groups included, in a stable order.
+    """Everything that is wrong, groups included, in a stable order; of very much the first: see `Enough`.
 
     `node_types` are the installed ones, for suggestions. An input without file or default is none: it may be bound.
     """
+    enough = Enough()
     with limit_suggestions():
-        problems_ = list(find_problems(graph, node_types))
+        problems_ = list(enough.take(find_problems(graph, node_types, enough)))
     return tuple(sorted(problems_, key=lambda item: (item.severity, item.node, item.socket, item.sentence)))
 
 
-def find_problems(graph: Graph, node_types: Mapping[str, type[Node]] | None = None) -> Iterator[Problem]:
+def find_problems(
+    graph: Graph, node_types: Mapping[str, type[Node]] | None = None, enough: Enough | None = None
+) -> Iterator[Problem]:
     """What `problems` returns, one after the other in the order of the graph: there may be more than fit into memory.
 
-    Call it inside of `limit_suggestions`.
+    Warnings that are not wanted any more are not made. Call it inside of `limit_suggestions`.
     """
-    return _inside(graph, catalogue() if node_types is None else node_types, 0)
+    return _inside(graph, catalogue() if node_types is None else node_types, enough or Enough(), 0)
 
 
 def recheck(
@@ -103,7 +107,7 @@ def differ_in_nodes(graph: Graph, before: Graph) -> bool:
     return all(getattr(graph, part) is getattr(before, part) for part in parts) and [*graph.nodes] == [*before.nodes]
 
 
-def _inside(graph: Graph, node_types: Mapping[str, type[Node]], depth: int) -> Iterator[Problem]:
+def _inside(graph: Graph, node_types: Mapping[str, type[Node]], enough: Enough, depth: int) -> Iterator[Problem]:
     yield from _ends(graph)
     yield from _links(graph)
     needed = graph.upstream(OUTPUTS)
@@ -121,14 +125,14 @@ def _inside(graph: Graph, node_types: Mapping[str, type[Node]], depth: int) -> I
             yield from value_problems
             if not value_problems:
                 sound_nodes.add(builtins.id(item))
-        yield from _check_inputs(graph, id, item, id in needed)
+        yield from _check_inputs(graph, id, item, id in needed, enough)
         if isinstance(item, Group):
-            yield from _group(id, item, node_types, depth)
+            yield from _group(id, item, node_types, enough, depth)
     feeding = {id: graph.feeding[id] for id in graph.nodes}
     for loop in find_loops(feeding, in_order=True) if has_loops(feeding) else ():
         yield Problem(loop[0], "", describe_loop(loop), rules.LOOP)
     yield from _animations(graph)
-    yield from _leftovers(graph)
+    yield from _leftovers(graph, enough)
     for node, socket, sentence, at in find_unmerged(graph.extra):
         yield Problem(node, socket, sentence, rules.UNMERGED, at)
 
@@ -150,12 +154,12 @@ def _animations(graph: Graph) -> Iterator[Problem]:
         yield Problem("", "", sentence, rules.BACKWARD_FRAMES, "settings.frames")
 
 
-def _group(id: str, item: Group, node_types: Mapping[str, type[Node]], depth: int) -> Iterator[Problem]:
+def _group(id: str, item: Group, node_types: Mapping[str, type[Node]], enough: Enough, depth: int) -> Iterator[Problem]:
     if depth == MAX_GROUP_DEPTH:
         sentence = f"group '{id}': groups nest deeper than {MAX_GROUP_DEPTH}; flatten some of them"
         yield Problem(id, "", sentence, rules.DEEP_GROUPS)
         return
-    for problem in _inside(item.graph, node_types, depth + 1):
+    for problem in _inside(item.graph, node_types, enough, depth + 1):
         where = f"{id}/{problem.node}" if problem.node else id
         at = f"nodes.{id}.{f'graph.{problem.at}' if not item.path else 'path'}" if problem.at else ""
         prefix = f"in group '{id}': " if len(problem.sentence) < _LONG else ""
@@ -163,7 +167,7 @@ def _group(id: str, item: Group, node_types: Mapping[str, type[Node]], depth: in
 
 
 def _links(graph: Graph) -> Iterator[Problem]:
-    for target, fault in graph.link_faults.items():
+    for target, fault in graph.find_link_faults():
         source = graph.links[target]
         has_node = source.node in graph.nodes or source.node == OUTPUTS
         is_reversed = has_node and graph.link_fault(target, source) is None
@@ -172,11 +176,13 @@ def _links(graph: Graph) -> Iterator[Problem]:
         yield Problem(target.node, target.socket, sentence, rules.BAD_LINK, f"links.{target}")
 
 
-def _check_inputs(graph: Graph, id: str, item: Item, needed: bool) -> Iterator[Problem]:
+def _check_inputs(graph: Graph, id: str, item: Item, needed: bool, enough: Enough) -> Iterator[Problem]:
     for name, socket in signature(item).inputs.items():
         if not socket.optional and Port(id, name) not in graph.links:
             # A node that nothing uses yet is unfinished, not wrong.
             rule = rules.UNLINKED_INPUT if needed else rules.UNFINISHED_NODE
+            if not enough.wants(rule.severity):
+                continue
             article = "an" if socket.kind[0] in "AEIOU" else "a"
             sentence = f"'{id}.{name}' is not linked: it needs {article} {socket.kind}"
             yield Problem(id, name, sentence, rule, f"nodes.{id}")
@@ -267,12 +273,14 @@ def _suggest_value(item: Item, path: list[str], key: str) -> str:
     return did_you_mean(key, value.items.by_name[named.kind].fields) if named else ""
 
 
-def _leftovers(graph: Graph) -> Iterator[Problem]:
+def _leftovers(graph: Graph, enough: Enough) -> Iterator[Problem]:
     """Unknown keys are kept, but whoever mistyped one should hear of it."""
     for path, keys in graph.extra.items():
         parts = path.split(".")
         item = graph.nodes.get(parts[1]) if len(parts) >= 3 and parts[0] == "nodes" else None
         for key in keys:
+            if not enough.wants(rules.UNKNOWN_KEY.severity):
+                return
             if not path and key in ("$schema", CONFLICTS):  # the first is for editors of text
                 continue
             if item is None:

@@ -15,6 +15,8 @@ _INT32 = 2**31
 """One above the largest int of GLSL."""
 FLOAT32 = 3.4028234663852886e38
 """The largest number that 32 bits hold."""
+_FEW = 16
+"""Numbers that are looked at one by one: those of a matrix."""
 
 
 def coerce_scalar(value: Value, setting: object) -> Scalar | None:
@@ -97,6 +99,8 @@ def scalar_fault(value: Value, setting: object) -> str | None:
         return f"{setting!r} does not fit: it takes {describe_type(value)}"
     if isinstance(plain, str):
         return _text_fault(value, plain)
+    if isinstance(plain, tuple) and len(plain) > _FEW and value.type != "curve" and _all_fit(value, plain):
+        return _order_fault(value, plain)
     for index, part in enumerate(plain if isinstance(plain, tuple) else (plain,)):
         if isinstance(part, float) and not math.isfinite(part):
             return f"{part} is not a finite number"
@@ -107,6 +111,13 @@ def scalar_fault(value: Value, setting: object) -> str | None:
         if abs(part) > (FLOAT32 if isinstance(part, float) else _INT32 - 1):
             return f"{setting!r} is too large for 32 bits"
     return _order_fault(value, plain) if isinstance(plain, tuple) else None
+
+
+def _all_fit(value: Value, numbers: tuple[float, ...]) -> bool:
+    """True if all of many numbers are in the range of a value and finite: an outline may have 4,000 points."""
+    least, most = min(numbers), max(numbers)
+    is_small = max(value.minimum, -FLOAT32) <= least and most <= min(value.maximum, FLOAT32)
+    return is_small and all(map(math.isfinite, numbers))
 
 
 def _text_fault(value: Value, text: str) -> str | None:

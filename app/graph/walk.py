@@ -182,16 +182,19 @@ class Wired(Generic[T]):
     @cached_property
     def link_faults(self) -> Mapping[Port, str]:
         """Why links cannot be, by target, loops aside."""
-        faults, valid_classes = dict[Port, str](), set[Hashable]()
+        return MappingProxyType(dict(self.find_link_faults()))
+
+    def find_link_faults(self) -> Iterator[tuple[Port, str]]:
+        """What `link_faults` holds, one after the other: there may be 100,000, and nobody reads them all."""
+        valid_classes = set[Hashable]()
         for target, source in self.links.items():
             link_class = self._classify_link(source, target)
             if link_class in valid_classes:
                 continue
             if fault := self.link_fault(source, target):
-                faults[target] = fault
+                yield target, fault
             else:
                 valid_classes.add(link_class)
-        return MappingProxyType(faults)
 
     def order(self) -> tuple[str, ...]:
         """All nodes, each after those that feed it; the same for equal graphs. Raises GraphError that names a loop."""

@@ -17,6 +17,7 @@ from ..document.disk import read_text
 from ..document.positions import Positions
 from ..errors import DocumentError, GraphError
 from ..graph import Graph, Group, Problem
+from ..graph.enough import MAX_FINDINGS, Enough
 from ..graph.problems import find_problems
 from ..graph.rules import RULES as GRAPH_RULES
 from ..graph.rules import Rule
@@ -71,17 +72,13 @@ class CheckReport(Struct, frozen=True):
 
     file: str
     findings: tuple[Finding, ...]
-    omitted: int = 0
-    """How many findings are left out. None of them is worse than those that are listed."""
+    more: bool = False
+    """True if there may be others, which were not looked for. None of them is worse than those that are listed."""
 
     @property
     def code(self) -> int:
         """The worst exit code."""
         return max((finding.code for finding in self.findings), default=0)
-
-
-MAX_FINDINGS = 1000
-"""Findings in a report. Chosen by judgement: more than a user corrects before the next check."""
 
 
 class GraphChecker(Struct, dict=True, eq=False):
@@ -110,7 +107,7 @@ class GraphChecker(Struct, dict=True, eq=False):
         try:
             text = read_text(path, sandbox=self.sandbox)
         except DocumentError as fault:
-            return self._report(str(path), "", None, self._document_problem(fault, ""))
+            return self._report(str(path), "", None, self._document_problem(fault, ""), Enough())
         return self.check_text(text, str(path), str(path.parent))
 
     def check_text(self, text: str, file: str, folder: str) -> CheckReport:
@@ -119,8 +116,9 @@ class GraphChecker(Struct, dict=True, eq=False):
             try:
                 whole_graph = document.loads(text, file, folder, self.types, sandbox=self.sandbox)
             except DocumentError as fault:
-                return self._report(file, text, None, self._document_problem(fault, file, text))
-            return self._report(file, text, whole_graph, self._find_problems(whole_graph, text))
+                return self._report(file, text, None, self._document_problem(fault, file, text), Enough())
+            enough = Enough()
+            return self._report(file, text, whole_graph, self._find_problems(whole_graph, text, enough), enough)
 
     def _document_problem(self, fault: DocumentError, file: str, text: str = "") -> Iterator[tuple[Problem, int, int]]:
         problem, line = texts.explain_fault(fault, text)
@@ -128,10 +126,10 @@ class GraphChecker(Struct, dict=True, eq=False):
             problem = replace(problem, sentence=str(fault), at="")
         yield problem, line if not file or fault.file == file else 0, fault.exit_code
 
-    def _find_problems(self, whole_graph: Graph, text: str) -> Iterator[tuple[Problem, int, int]]:
+    def _find_problems(self, whole_graph: Graph, text: str, enough: Enough) -> Iterator[tuple[Problem, int, int]]:
         """Problems, each with its line if its JSON path does not give the line, and its exit code."""
         has_errors = False
-        for problem in find_problems(whole_graph, self.types):
+        for problem in find_problems(whole_graph, self.types, enough):
             is_error = problem.severity == "error"
             has_errors = has_errors or is_error
             yield problem, 0, GraphError.exit_code if is_error else 0
@@ -139,43 +137,57 @@ class GraphChecker(Struct, dict=True, eq=False):
             yield problem, line, 0
         if has_errors:
             return
+        for problem in self._find_warnings(whole_graph):
+            if not enough.wants("warning"):
+                break
+            yield problem, 0, 0
+        for code, problem in compiled.problems(whole_graph, self.world, enough):
+            yield problem, 0, code
+
+    def _find_warnings(self, whole_graph: Graph) -> Iterator[Problem]:
+        """What rules and folders say of a graph without errors."""
         for body, inside, at in bodies(whole_graph):
             sheet = GraphFacts(body)
             for check in CHECKS:
                 for problem in check.find(sheet) if check.rule.name not in self.off else ():
                     node = f"{inside}{problem.node}" if problem.node else inside.removesuffix("/")
-                    yield replace(problem, node=node, at=f"{at}{problem.at}" if problem.at else ""), 0, 0
-        for problem in self.around.problems(whole_graph):
-            yield problem, 0, 0
-        for code, problem in compiled.problems(whole_graph, self.world):
-            yield problem, 0, code
+                    yield replace(problem, node=node, at=f"{at}{problem.at}" if problem.at else "")
+        yield from self.around.problems(whole_graph)
 
     def _report(
-        self, file: str, text: str, whole_graph: Graph | None, problems: Iterator[tuple[Problem, int, int]]
+        self,
+        file: str,
+        text: str,
+        whole_graph: Graph | None,
+        problems: Iterator[tuple[Problem, int, int]],
+        enough: Enough,
     ) -> CheckReport:
-        """The report of one file: allowed problems are left out, then only the worst are kept.
+        """The report of one file: allowed problems are left out, and no more are asked for than are wanted.
 
         An allowance is called stale only if its rule was sure to find what it allows: not a rule that is off or that
         depends on other files, and none at all where an error ended the check early.
         """
-        reported, used, count, whole = list[tuple[Problem, int, int]](), set[str](), 0, True
+        reported, used, whole = list[tuple[Problem, int, int]](), set[str](), True
         allowing_graph = whole_graph if whole_graph is not None and whole_graph.settings.allow else None
         for item in problems:
+            enough.seen += 1
+            severity = item[0].severity
             if item[0].rule.name in self.off:
                 continue
             if allowing_graph is not None and (entry := allowing.find_allowance(allowing_graph, item[0])):
                 used.add(entry)
-            else:
-                count, whole = count + 1, whole and item[0].severity != "error"
+            elif enough.wants(severity):
+                whole = whole and severity != "error"
+                enough.count(severity)
                 reported.append(item)
-                if len(reported) > 2 * MAX_FINDINGS:  # not all are kept: there may be more than fit into memory
-                    reported = _choose_worst(reported)
+                if not enough.wants("error"):
+                    break
         if allowing_graph is not None and allowing.STALE_ALLOW.name not in self.off:
-            unsure = {*_OUTER, *self.off} if whole else RULES
+            unsure = {*_OUTER, *self.off} if whole and not enough.stopped else RULES
             stale = [(problem, 0, 0) for problem in allowing.find_stale_allowances(allowing_graph, used, RULES, unsure)]
-            reported, count = reported + stale, count + len(stale)
+            reported += stale
         if not reported:
-            return CheckReport(file, ())
+            return CheckReport(file, (), enough.stopped)
         chosen = _choose_worst(reported)
         places = [() if line else _find_places(whole_graph, problem) for problem, line, _ in chosen]
         has_double_key = any(problem.rule is texts.DOUBLE_KEY for problem, _, _ in chosen)
@@ -184,7 +196,8 @@ class GraphChecker(Struct, dict=True, eq=False):
             Finding(line or _line(lines, paths, problem), problem, code)
             for (problem, line, code), paths in zip(chosen, places, strict=True)
         ]
-        return CheckReport(file, tuple(sorted(findings, key=_order)), count - len(chosen))
+        is_cut = enough.stopped or len(chosen) < len(reported)
+        return CheckReport(file, tuple(sorted(findings, key=_order)), is_cut)
 
 
 def _choose_worst(reported: Iterable[tuple[Problem, int, int]]) -> list[tuple[Problem, int, int]]:

@@ -14,6 +14,7 @@ from msgspec import Struct, field
 from ..compiler import Request, examine, find_named_files
 from ..errors import DeviceError, HalationError, InputError, ShaderError, UsageError
 from ..graph import INPUTS, OUTPUTS, Graph, Group, Problem, find_key_range
+from ..graph.enough import MAX_FINDINGS, Enough
 from ..graph.rules import Rule
 from ..resources.color_program import ColorProgram
 from ..resources.input_files import open_file
@@ -71,10 +72,6 @@ RULES = (
 
 SIZE = (1920, 1080)
 """The size that is assumed for a missing picture."""
-
-MAX_UNREADABLE = 1000
-"""Files that cannot be read before `check` looks for no others. Chosen by judgement: as many as a report lists, and
-looking for each takes as long as checking three nodes."""
 
 _POINTER = b"version https://git-lfs.github.com/spec/"
 _POINTER_SIZE = 1024
@@ -180,8 +177,8 @@ class NotingProvider(Struct, dict=True, eq=False):
             return self._answer("once", key, ask)
         except InputError as fault:
             self.faults[str(_detach(fault))] = self._asked.get(path, path)
-        if len(self.faults) > MAX_UNREADABLE:
-            raise ManyFilesError(f"more than {MAX_UNREADABLE:,} files cannot be read: no others were looked for")
+        if len(self.faults) > MAX_FINDINGS:
+            raise ManyFilesError(f"more than {MAX_FINDINGS:,} files cannot be read: no others were looked for")
         return None
 
     def _answer(self, kind: str, key: object, ask: Callable[[], T]) -> T:
@@ -207,18 +204,24 @@ def _detach(fault: HalationError) -> HalationError:
     return fault.with_traceback(None)
 
 
-def problems(graph: Graph, world: NotingProvider) -> Iterator[tuple[int, Problem]]:
-    """The problems of a graph without errors, each with the exit code that rendering would have."""
+def problems(graph: Graph, world: NotingProvider, enough: Enough) -> Iterator[tuple[int, Problem]]:
+    """The problems of a graph without errors, each with the exit code that rendering would have.
+
+    Warnings that are not wanted any more are not looked for.
+    """
     free = {name: item for name, item in graph.inputs.items() if not item.file and item.default is None}
     read = {source.socket for source in graph.links.values() if source.node == INPUTS}
-    for name in free.keys() & read:
+    for name in free.keys() & read if enough.wants("warning") else ():
         sentence = f"input '{name}' has no file and no default: rendering needs -i {name}=FILE"
         yield 0, Problem(INPUTS, name, sentence, UNBOUND_INPUT, f"inputs.{name}")
     colors = list(_color_faults(graph, world.sandbox))
     for fault in colors:
         problem = Problem(fault.node, fault.name, str(fault.error), BAD_SETTING, fault.at)
         yield fault.error.exit_code, problem
-    yield from ((0, problem) for problem in find_missing_glyphs(graph, world))
+    for problem in find_missing_glyphs(graph, world):
+        if not enough.wants("warning"):
+            break
+        yield 0, problem
     if not graph.outputs or any(fault.node != OUTPUTS for fault in colors):
         return
     world.faults.clear()

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from itertools import islice
 
 from halation.nodes import Node, Trait
 from msgspec.structs import replace
 
 from ..graph import Graph, Problem, problems
+from ..graph.enough import MAX_FINDINGS
 from ..graph.problems import differ_in_nodes, recheck
 from .allowing import find_allowance
 from .rules import data, filtering, light
@@ -21,7 +23,10 @@ def find_remarks(graph: Graph, types: Mapping[str, type[Node]]) -> tuple[Problem
     graph_problems = problems(graph, types)
     if any(problem.severity == "error" for problem in graph_problems):
         return graph_problems
-    return (*graph_problems, *sorted(_hints(graph), key=lambda item: (item.node, item.socket, item.sentence)))
+    return (
+        *graph_problems,
+        *sorted(islice(_hints(graph), MAX_FINDINGS), key=lambda item: (item.node, item.socket, item.sentence)),
+    )
 
 
 def recheck_remarks(

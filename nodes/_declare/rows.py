@@ -44,9 +44,10 @@ class RowLayout(Struct, frozen=True):
         if not all(isinstance(row, list | tuple) for row in parts):
             return None
         rows = [tuple(row) for row in cast("tuple[list[Any], ...]", parts)]
-        if not all(2 <= len(row) <= self.length and _are_numbers(row) for row in rows):
+        if not all(2 <= length <= self.length for length in set(map(len, rows))):
             return None
-        return self.join(tuple(map(float, row)) for row in rows)
+        numbers = self.join(rows)
+        return tuple(map(float, numbers)) if _are_numbers(numbers) else None
 
     def _trim(self, point: Row) -> Row:
         length = len(point)
@@ -56,7 +57,9 @@ class RowLayout(Struct, frozen=True):
 
 
 def _are_numbers(parts: Iterable[object]) -> bool:
-    return all(isinstance(part, int | float) and not isinstance(part, bool) for part in parts)
+    return set(map(type, parts)) <= {int, float} or all(
+        isinstance(part, int | float) and not isinstance(part, bool) for part in parts
+    )
 
 
 SPLINE_ROWS = RowLayout(7, 0.0, 4096, "then up to five numbers for its tangents and its feather")

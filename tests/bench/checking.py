@@ -1,7 +1,8 @@
 """What `halation check` takes for large files, whatever is in them. It prints JSON.
 
 Each file is checked by a process of its own: `seconds` of processor time, `memory` in MiB at its peak, and the exit
-`code`. A chain is a valid graph; the other files are what a hostile one may hold, and most are refused.
+`code`. A chain is a valid graph; the other files are what a hostile one may hold (`crowded_graphs`), and most are
+refused. Names as arguments choose some of them: `checking.py keys lights`.
 """
 
 from __future__ import annotations
@@ -9,20 +10,17 @@ from __future__ import annotations
 import json
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from bench.programs import halation_command
 from bench.started import run_process
-from large_graphs import GRAPHS
+from crowded_graphs import CROWDED
 
 CHAINS = (20_000, 99_000)
 """Nodes; a file may hold 100,000."""
-
-SHAPES = {"mislinked": 99_000, "paired": 99_000, "coded": 99_000, "animated": 99_000, "missing": 10_000}
-"""Graphs of `large_graphs`, and how many nodes of each: links to nothing, loops, code, expressions, missing files."""
 
 
 def write_chain(count: int) -> str:
@@ -45,14 +43,20 @@ def write_graph(**sections: object) -> str:
     return json.dumps({**graph, **sections}, indent=1)
 
 
-def write_files() -> Iterator[tuple[str, str]]:
-    """Names and texts of all files, the largest last: the peak of a process counts what this one held at its start."""
+def write_files(names: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """Names and texts of all files, or of those of `CROWDED` with these names; chains come last.
+
+    The peak of a process counts what this one held at its start.
+    """
+    for name, (build, count) in CROWDED.items():
+        if name in names or not names:
+            yield f"{count:,} {name}", json.dumps(build(count))
+    if names:
+        return
     yield "a key of 1 MB", write_graph(ui={"k" * 10**6: 1})
     yield "a string of 20 MB", write_graph(ui={"note": "x" * (20 << 20)})
     yield "40,000 brackets", write_graph(ui=[]).replace("[]", "[" * 40_000 + "]" * 40_000)
     yield "100,000 faults", write_graph(nodes={f"n{number}": {"type": f"t{number}"} for number in range(99_000)})
-    for name, count in SHAPES.items():
-        yield f"{count:,} {name}", json.dumps(GRAPHS[name](count), indent=1)
     for count in CHAINS:
         yield f"{count:,} nodes", write_chain(count)
 
@@ -67,7 +71,7 @@ def main() -> None:
     """Print what each file took."""
     checks: list[dict[str, object]] = []
     with tempfile.TemporaryDirectory() as folder:
-        for name, text in write_files():
+        for name, text in write_files(sys.argv[1:]):
             path = Path(folder, "graph.json")
             path.write_text(text)
             checks.append({"name": name, **measure_check(path)})

@@ -180,10 +180,32 @@ class TestGroupFiles:
         for number in range(1, 21):
             twice = {name: group(f"{number - 1}.json") for name in ("g", "h")}
             write(tmp_path / f"{number}.json", nodes=twice)
-        graph = load(tmp_path / "10.json", TOYS, sandbox=UNRESTRICTED)
+        graph = load(tmp_path / "8.json", TOYS, sandbox=UNRESTRICTED)
         assert graph.nodes["g"].graph is graph.nodes["h"].graph
         with pytest.raises(DocumentError, match="more than 100000 nodes"):
             load(tmp_path / "20.json", TOYS, sandbox=UNRESTRICTED)
+
+    def test_what_could_not_be_read_again_is_not_saved(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Groups of files are counted as they are now: the file may be missing when the graph is saved."""
+        path = tmp_path / "x.json"
+        path.write_text("old")
+        bodies = Graph({"a": Gain()})
+        for _ in range(3):
+            bodies = Graph({"g": Group(bodies, "other.json"), "h": Group(bodies, "other.json")})
+        monkeypatch.setattr(limits, "MAX_NODES", 14 * limits.GROUP_COST + 8)
+        save(bodies, path, sandbox=UNRESTRICTED)
+        path.write_text("old")
+        monkeypatch.setattr(limits, "MAX_NODES", 14 * limits.GROUP_COST + 7)
+        with pytest.raises(OutputError, match="it could not be read again: with all groups"):
+            save(bodies, path, sandbox=UNRESTRICTED)
+        with pytest.raises(
+            OutputError, match=r"it could not be read again: nodes: the key 'k+'\.\.\. has 1,001 characters"
+        ):
+            save(Graph({"k" * (limits.MAX_KEY + 1): Gain()}), path, sandbox=UNRESTRICTED)
+        monkeypatch.setattr(limits, "MAX_LAYOUT", 4)
+        with pytest.raises(OutputError, match="it could not be read again: ui: "):
+            save(Graph(ui={"nodes": {"a": [1, 2, 3, 4]}}), path, sandbox=UNRESTRICTED)
+        assert path.read_text() == "old"
 
     def test_values_of_a_group_are_typed(self, tmp_path: Path) -> None:
         save(small(), tmp_path / "small.json", sandbox=UNRESTRICTED)

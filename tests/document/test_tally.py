@@ -12,12 +12,18 @@ from halation.graph.expressions.tokens import MAX_LENGTH
 from large_graphs import animated, chain, change, controlled, document, keyed
 
 MOST = 6
+MOSTS = (
+    *("MAX_ENDS", "MAX_ALL_ENDS", "MAX_LINKS", "MAX_KEYS", "MAX_WORDS", "MAX_ALLOWED", "MAX_ODD", "MAX_KEPT"),
+    *("MAX_LAYOUT", "MAX_TEXTS", "MAX_LETTERS", "MAX_FILES", "MAX_ITEMS", "MAX_NUMBERS", "MAX_UNITS"),
+)
 
 
 @pytest.fixture(autouse=True)
 def few(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("MAX_ENDS", "MAX_ALL_ENDS", "MAX_LINKS", "MAX_KEYS", "MAX_WORDS", "MAX_ALLOWED"):
+    for name in MOSTS:
         monkeypatch.setattr(limits, name, MOST)
+    for name in ("LEAST_WORDS", "LEAST_KEYS"):
+        monkeypatch.setattr(limits, name, 0)
 
 
 def ends(section: str, count: int) -> dict[str, Any]:
@@ -33,6 +39,31 @@ def formulas(*texts: str) -> dict[str, Any]:
     return change(chain(3), animation=entries)
 
 
+def group(path: str) -> dict[str, Any]:
+    return {"type": "group", "path": path}
+
+
+def blur(sigma: float) -> dict[str, Any]:
+    return {"type": "gaussian_blur", "values": {"sigma": sigma}, "units": {"sigma": "height"}}
+
+
+def key(count: int) -> dict[str, Any]:
+    """A key of so many parts besides those that each has."""
+    return {"frame": 1, "value": [0.0] * (count + 1)}
+
+
+def nodes(type: str, count: int, **values: Any) -> dict[str, Any]:
+    """So many nodes of a type, which differ in their values."""
+    return document(
+        {f"n{i}": {"type": type, "values": {name: make(i) for name, make in values.items()}} for i in range(count)}, {}
+    )
+
+
+def mislinked(count: int) -> dict[str, Any]:
+    """Links from nothing, beside as few others as there may be."""
+    return change(chain(1), links={f"x{number}.image": "n.out" for number in range(count)})
+
+
 CASES = [
     ("inputs", lambda count: ends("inputs", count), "inputs"),
     ("outputs", lambda count: ends("outputs", count), "outputs"),
@@ -40,6 +71,17 @@ CASES = [
     ("links", lambda count: chain(count - 1), "links"),
     ("keys", keyed, "animation"),
     ("words", lambda count: formulas(" + ".join("1" * ((count + 1) // 2)) + " -" * (1 - count % 2)), "animation"),
+    ("odd nodes", lambda count: nodes("odd", count), "nodes"),
+    ("odd keys", lambda count: change(chain(1), **{f"x{i}": 0 for i in range(count)}), ""),
+    ("odd values", lambda count: nodes("noise", 1, **{f"x{i}": lambda _: 0 for i in range(count)}), "nodes"),
+    ("kept parts", lambda count: change(chain(1), x=[0] * (count - 1)), ""),
+    ("layout", lambda count: change(chain(1), ui={"x": [0] * (count - 1)}), "ui"),
+    ("texts", lambda count: nodes("text", count, text=str), "nodes"),
+    ("letters", lambda count: nodes("text", 1, text=lambda _: "x" * count), "nodes"),
+    ("files", lambda count: nodes("read_image", count, path=str), "nodes"),
+    ("files of groups", lambda count: document({f"n{i}": group(str(i)) for i in range(count)}, {}), "nodes"),
+    ("units", lambda count: document({f"n{i}": blur(0.1 * i) for i in range(count)}, {}), "nodes"),
+    ("numbers of keys", lambda count: change(chain(1), animation={"n0.stops": {"keys": [key(count)]}}), "animation"),
     ("allowed", lambda count: change(chain(2), settings={"allow": {f"r{i}": "" for i in range(count)}}), "settings"),
 ]
 
@@ -49,7 +91,7 @@ def test_one_part_more_is_refused(build: Any, section: str) -> None:
     loads(json.dumps(build(MOST)), sandbox=None)
     with pytest.raises(DocumentError, match=f"more than {MOST} .*; that is no graph") as caught:
         loads(json.dumps(build(MOST + 1)), sandbox=None)
-    assert caught.value.path.partition(".")[0] == section
+    assert caught.value.path.partition(".")[0] == section or not section
 
 
 def test_parts_of_groups_count_too() -> None:
@@ -75,11 +117,42 @@ def test_values_that_equal_formulas_read_count_each_time() -> None:
         loads(json.dumps(formulas(*texts, texts[0])), sandbox=None)
 
 
-def test_a_hundred_thousand_nodes_with_formulas_are_a_graph(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ten_thousand_formulas_are_a_graph(monkeypatch: pytest.MonkeyPatch) -> None:
     """Scaled to a hundredth: each node has a link, and an expression of three words."""
-    for name in ("MAX_LINKS", "MAX_WORDS"):
-        monkeypatch.setattr(limits, name, (3 if name == "MAX_LINKS" else 5) * 1000)
-    assert len(loads(json.dumps(animated(990)), sandbox=None).animation) == 989
+    for name, most in (("MAX_LINKS", 300), ("MAX_WORDS", 500), ("MAX_ODD", 300)):
+        monkeypatch.setattr(limits, name, most)
+    monkeypatch.setattr(limits, "LEAST_WORDS", 5)
+    assert len(loads(json.dumps(animated(101)), sandbox=None).animation) == 100
+    with pytest.raises(DocumentError, match="words and signs"):
+        loads(json.dumps(animated(102)), sandbox=None)
+
+
+def test_named_items_are_counted_before_they_are_made() -> None:
+    """What an item holds counts too, as numbers."""
+    lights = {f"l{number}": 0 for number in range(MOST + 1)}
+    with pytest.raises(DocumentError, match="more than 6 named items"):
+        loads(json.dumps(nodes("deferred_lighting", 1, lights=lambda _: lights)), sandbox=None)
+
+
+def test_links_from_nothing_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(limits, "MAX_LINKS", 2 * MOST)
+    loads(json.dumps(mislinked(MOST)), sandbox=None)
+    with pytest.raises(DocumentError, match="more than 6 links from or to nodes that are not there") as caught:
+        loads(json.dumps(mislinked(MOST + 1)), sandbox=None)
+    assert caught.value.path == "links.x0.image"
+
+
+def test_a_loop_is_named_in_a_graph_of_many_links(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One of few links is read, so that it can be repaired."""
+    monkeypatch.setattr(limits, "MAX_LINKS", 2 * MOST)
+    for count, refused in ((MOST - 1, False), (MOST, True)):
+        graph = chain(count)
+        graph["links"]["n0.image"] = "n1.out"
+        if refused:
+            with pytest.raises(DocumentError, match="the nodes n0 -> n1 -> n0 form a loop"):
+                loads(json.dumps(graph), sandbox=None)
+        else:
+            assert loads(json.dumps(graph), sandbox=None).links
 
 
 def test_what_is_no_expression_does_not_count() -> None:

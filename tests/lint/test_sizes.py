@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import io
 import json
 import sys
@@ -16,17 +17,20 @@ from halation.cli import options
 from halation.document import limits
 from halation.document.positions import Positions
 from halation.errors import DocumentError, InputError
+from halation.graph import enough
+from halation.graph.enough import MAX_FINDINGS
 from halation.graph.names import can_compare_all
 from halation.inputs.provider import MediaProvider
-from halation.lint import checking, compiled
-from halation.lint.checking import MAX_FINDINGS, CheckReport, GraphChecker
+from halation.lint import compiled
+from halation.lint.checking import CheckReport, GraphChecker
 from halation.lint.compiled import NotingProvider
+from halation.lint.rules import unused
 from halation.nodes import Kind
 from halation.resources.picture import Picture
 from halation.resources.provider import PictureProbe
 from halation.resources.sandbox import UNRESTRICTED
 from halation.resources.suggestions import limit_suggestions, may_compare
-from large_graphs import GRAPHS, TEXTS, chain, change, coded, fan, missing, mistyped
+from large_graphs import GRAPHS, TEXTS, chain, change, coded, fan, missing
 from msgspec.structs import replace
 from oiio_pictures import write_picture
 
@@ -76,7 +80,7 @@ def test_a_file_that_is_missing_is_looked_for_once(monkeypatch: pytest.MonkeyPat
 
 def test_of_many_missing_files_the_first_are_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     """To look for each of 40,000 took 20 s."""
-    monkeypatch.setattr(compiled, "MAX_UNREADABLE", 5)
+    monkeypatch.setattr(compiled, "MAX_FINDINGS", 5)
     report = check(json.dumps(missing(30)))
     sentences = [finding.problem.sentence for finding in report.findings if finding.code]
     assert report.code == InputError.exit_code and len(sentences) == 7
@@ -163,13 +167,52 @@ def test_memory_stays_in_proportion_to_the_text(name: str) -> None:
         tracemalloc.stop()
 
 
-def test_a_thousand_findings_are_reported_and_the_others_counted() -> None:
+def test_no_more_than_a_thousand_faults_are_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     graph = fan(MAX_FINDINGS + 500)
     for node in list(graph["nodes"].values())[1:]:
         node["type"] = "exposre"
+    explained: list[str] = []
+    problems = importlib.import_module("halation.graph.problems")
+    explain = problems.explain_unknown
+
+    def count(id: str, *rest: Any) -> Any:
+        explained.append(id)
+        return explain(id, *rest)
+
+    monkeypatch.setattr(problems, "explain_unknown", count)
     report = check(json.dumps(graph))
-    assert len(report.findings) == MAX_FINDINGS and report.omitted >= 500
+    assert len(report.findings) == MAX_FINDINGS and report.more
+    assert MAX_FINDINGS - 1 <= len(explained) <= MAX_FINDINGS
     assert report.code == 3 and "did you mean 'exposure'" in report.findings[1].problem.sentence
+
+
+def test_no_more_warnings_are_made_than_are_wanted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nodes that lead nowhere; an error behind them is still found."""
+    found: list[Any] = []
+    make = unused.Problem
+
+    def count(*facts: Any) -> Any:
+        found.append(facts)
+        return make(*facts)
+
+    monkeypatch.setattr(unused, "Problem", count)
+    report = check(json.dumps(fan(MAX_FINDINGS + 500)))
+    assert len(report.findings) == MAX_FINDINGS and report.more and report.code == 0
+    assert len(found) <= MAX_FINDINGS + 1
+
+
+def test_allowed_warnings_are_looked_at_ten_thousand_times(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(enough, "MAX_SEEN", 30)
+    graph = change(fan(100), settings={"allow": {"unused-branch": "shown elsewhere", "not-canonical": "by hand"}})
+    report = check(json.dumps(graph))
+    assert not report.findings and report.more
+
+
+def test_a_graph_with_few_faults_says_that_these_are_all() -> None:
+    graph = fan(5)
+    graph["links"]["n3.image"] = "nothing.out"
+    report = check(json.dumps(graph))
+    assert report.code == 3 and not report.more
 
 
 def test_names_of_all_nodes_are_not_listed_for_each_fault() -> None:
@@ -195,24 +238,8 @@ def test_lines_behind_the_last_finding_are_not_read() -> None:
     assert [Positions(long, paths, first=first).line(paths[1]) for first in (True, False)] == [line, line]
 
 
-def test_findings_that_are_left_out_are_not_kept(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Ids of 900 letters in 18 groups inside each other made two gigabytes of sentences."""
-    kept: list[int] = []
-    choose = checking._choose_worst
-
-    def count(reported: list[Any]) -> list[Any]:
-        kept.append(len(reported))
-        return choose(reported)
-
-    monkeypatch.setattr(checking, "MAX_FINDINGS", 5)
-    monkeypatch.setattr(checking, "_choose_worst", count)
-    report = check(json.dumps(mistyped(100)))
-    assert len(kept) > 10 and max(kept) == 11
-    assert len(report.findings) == 5 and len(report.findings) + report.omitted >= 101
-
-
 def test_of_many_unknown_keys_the_first_are_reported(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(checking, "MAX_FINDINGS", 5)
+    monkeypatch.setattr(enough, "MAX_FINDINGS", 5)
     report = check(json.dumps(change(chain(2), **{f"x{number}": 1 for number in range(40)}), indent=1))
     assert [finding.problem.at for finding in report.findings] == [f"x{number}" for number in range(5)]
 

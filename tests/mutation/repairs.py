@@ -335,7 +335,7 @@ REPAIRS = (
     Repair(
         "of many missing files only the first are looked for",
         "app/lint/compiled.py",
-        "        if len(self.faults) > MAX_UNREADABLE:\n",
+        "        if len(self.faults) > MAX_FINDINGS:\n",
         "        if len(self.faults) > 10**9:\n",
         "tests/lint/test_sizes.py::test_of_many_missing_files_the_first_are_looked_for",
     ),
