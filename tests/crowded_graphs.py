@@ -146,7 +146,7 @@ CROWDED: Mapping[str, tuple[Callable[[int], Document], int]] = MappingProxyType(
         "plug-in nodes": (lambda count: hold(count, "acme.odd", lambda n: {"v": n}), 99_000),
         "plug-in nodes of packages": (
             lambda count: change(
-                hold(0, "x", dict),
+                document({}, {}),
                 nodes={f"n{n}": {"type": f"acme{n}.odd", "package": f"acme{n}==1"} for n in range(count)},
             ),
             99_000,
@@ -287,7 +287,7 @@ CROWDED: Mapping[str, tuple[Callable[[int], Document], int]] = MappingProxyType(
         "ramp stops": (lambda count: hold(1, "gradient_map", lambda n: {"ramp": [0.1] * 5 * count}), 290_000),
         "matrices": (lambda count: hold(count, "color_matrix", lambda n: {"matrix": [n] * 9}), 70_000),
         "lines of code": (
-            lambda count: hold(0, "x", dict) | {"nodes": {"c": {"type": "glsl", "code": ["// x"] * count}}},
+            lambda count: document({}, {}) | {"nodes": {"c": {"type": "glsl", "code": ["// x"] * count}}},
             1_000_000,
         ),
         "equal code": (
@@ -296,14 +296,13 @@ CROWDED: Mapping[str, tuple[Callable[[int], Document], int]] = MappingProxyType(
         ),
         "broken code": (
             lambda count: (
-                hold(0, "x", dict)
-                | {"nodes": {f"c{n}": {"type": "glsl", "code": [f"vec4 ( {n}"]} for n in range(count)}}
+                document({}, {}) | {"nodes": {f"c{n}": {"type": "glsl", "code": [f"vec4 ( {n}"]} for n in range(count)}}
             ),
             99_000,
         ),
         "isf code": (
             lambda count: (
-                hold(0, "x", dict)
+                document({}, {})
                 | {
                     "nodes": {
                         "c": {
@@ -323,13 +322,13 @@ CROWDED: Mapping[str, tuple[Callable[[int], Document], int]] = MappingProxyType(
         ),
         "files of code": (
             lambda count: (
-                hold(0, "x", dict) | {"nodes": {f"c{n}": {"type": "glsl", "file": f"f{n}.glsl"} for n in range(count)}}
+                document({}, {}) | {"nodes": {f"c{n}": {"type": "glsl", "file": f"f{n}.glsl"} for n in range(count)}}
             ),
             99_000,
         ),
         "files of groups": (
             lambda count: (
-                hold(0, "x", dict) | {"nodes": {f"c{n}": {"type": "group", "path": f"f{n}.json"} for n in range(count)}}
+                document({}, {}) | {"nodes": {f"c{n}": {"type": "group", "path": f"f{n}.json"} for n in range(count)}}
             ),
             99_000,
         ),
@@ -343,7 +342,6 @@ CROWDED: Mapping[str, tuple[Callable[[int], Document], int]] = MappingProxyType(
         ),
         "long ids of many bytes": (lambda count: rename(chain(count), lambda id: id + LETTERS * 20), 40_000),
         "long ids in a loop": (lambda count: rename(GRAPHS["looped"](count), lambda id: id + "x" * 250), 30_000),
-        "ids with dots": (lambda count: rename(chain(count), lambda id: f"{id}.x"), 99_000),
         "names alike": (lambda count: rename(GRAPHS["mislinked"](count), lambda id: f"{'a' * 60}{id}"), 90_000),
         "links from an output that is none": (
             lambda count: relink(count, lambda n: (f"n{n}.image", "n.nothing")),

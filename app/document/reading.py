@@ -273,14 +273,15 @@ class _BodyReader(Struct):
         if (node := self.loading.shared.get(text := msgspec.json.encode(raw))) is not None:
             return node[0], 1, node[1]
         at, unknown_count = member(section, id), len(self.extra)
-        type = cast("dict[str, Any]", raw).get("type") if isinstance(raw, dict) else None
+        entry = cast("dict[str, Any]", raw) if isinstance(raw, dict) else {}
+        type = entry.get("type")
         if isinstance(type, str) and (kind := self.loading.find_kind(type)):
-            record, count = convert(raw, records.NodeRecord, self.file, at), 1
-            self.keep_unknown(f"nodes.{id}", raw, records.NodeRecord)
+            record, count = convert(entry, records.NodeRecord, self.file, at), 1
+            self.keep_unknown(f"nodes.{id}", entry, records.NodeRecord)
             item: Item = self.read_node(id, kind, record, at)
         else:
             record = convert(raw, records.TypeRecord, self.file, at)
-            item, count = self.read_item(id, raw, record.type, at, depth)
+            item, count = self.read_item(id, entry, record.type, at, depth)
         if record.type not in _LANGUAGES and not isinstance(item, Group) and len(self.extra) == unknown_count:
             self.loading.shared[text] = item, record.muted
         return item, count, record.muted

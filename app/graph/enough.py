@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Protocol, TypeVar
+from typing import Protocol, TypeVar, get_args
 
 from msgspec import Struct, field
 
@@ -31,7 +31,7 @@ G = TypeVar("G", bound=Graded)
 class Enough(Struct):
     """Counts findings of a graph. What finds them asks whether more are wanted, and stops where none are."""
 
-    listed: dict[Severity, int] = field(default_factory=lambda: dict[Severity, int](error=0, warning=0))
+    listed: dict[Severity, int] = field(default_factory=lambda: dict.fromkeys(get_args(Severity), 0))
     seen: int = 0
     stopped: bool = False
     """True if some may not have been found."""
