@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Container, Iterator
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from itertools import pairwise, product
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -74,6 +75,14 @@ LAYERS = {
 
 each = pytest.mark.parametrize("name", PRESETS, scope="module")
 """All tests of a preset one after the other: they share its picture and its programs."""
+
+
+def each_day(part: int, always: Container[str] = ()) -> list[Any]:
+    """All presets: one in so many is tried by day, and those named; the others by night."""
+    return [
+        pytest.param(name, marks=() if name in always or not number % part else pytest.mark.nightly)
+        for number, name in enumerate(PRESETS)
+    ]
 
 
 @cache
@@ -254,9 +263,12 @@ def test_nothing_is_crushed_or_clipped(name: str, full: FullPictures) -> None:
     assert encoded(light).std() > 15.0
 
 
-@each
+@pytest.mark.parametrize("name", each_day(3), scope="module")
 def test_half_size_looks_the_same(name: str, renderer: Renderer, full: FullPictures) -> None:
-    """Mean difference of sRGB below 6/255; where fine lines or dots are drawn, a correlation above 0.75."""
+    """Mean difference of sRGB below 6/255; where fine lines or dots are drawn, a correlation above 0.75.
+
+    Every day a third of the presets: tests/nodes/test_promises.py asks every node for it.
+    """
     graph = loaded(name)
     proxy = encoded(picture(renderer, graph, scale=0.5))
     width, height = size_of(graph)
@@ -267,13 +279,7 @@ def test_half_size_looks_the_same(name: str, renderer: Renderer, full: FullPictu
         assert np.abs(proxy - expected).mean() < 6.0
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(name, marks=() if name in TIME or not number % 12 else pytest.mark.nightly)
-        for number, name in enumerate(PRESETS)
-    ],
-)
+@pytest.mark.parametrize("name", each_day(12, TIME))
 def test_rendering_twice_gives_the_same_bytes(name: str, forgetful: Renderer) -> None:
     """Every day what moves and a twelfth of the others: tests/nodes/test_promises.py asks every node for it."""
     wanted, part = RenderRequest(scale=small_scale(name)), 0.1 if name in TIME else 0.5
