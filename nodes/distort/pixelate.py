@@ -21,7 +21,7 @@ class Pixelate(Filter):
     sampling: Annotated[
         Literal["average", "center"],
         Doc(
-            "Average keeps the light. Center shows the pixel in the middle, which looks like a "
+            "Average keeps the light. Center shows the picture in the middle of each square, which looks like a "
             "small picture that was enlarged, with aliasing."
         ),
     ] = "average"

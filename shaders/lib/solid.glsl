@@ -1,6 +1,7 @@
 // How deep the objects of a picture are: as deep as they are wide. Seen from any side, a slice through a ball is a
 // circle, whose width the picture shows; at a place with `a` pixels to the left end of the circle and `b` to the right
-// one it is 2 sqrt(a b) deep. Of the slices across and down the thinner one counts, so a rod is as deep as it is thick.
+// one it is 2 sqrt(a b) deep, if that is a length at its middle: its front is nearer and looks larger. Of the slices
+// across and down the thinner one counts, so a rod is as deep as it is thick.
 // Surfaces that reach the border of the picture count as endless on that side.
 //
 // `runs` holds how many pixels of the same surface follow to the left, to the right, above and below.
@@ -47,7 +48,9 @@ vec4 solid_runs(int reach) {
 vec4 solid_planes(const vec4 rays[3]) {
     vec4 plane = planes_at(pixel), runs = runs_at(pixel) + 0.5;
     if (plane.x <= 0.0) return plane;
-    vec2 widths = 2.0 * sqrt(runs.xz * runs.yw);
-    float pitch = length(vec3(rays[0].x, rays[1].x, rays[2].x)) / (float(extent.x) * plane.x);
-    return vec4(plane.xyz, min(widths.x, widths.y) * pitch);
+    vec2 halves = sqrt(runs.xz * runs.yw);
+    // A circle that ends at an angle of tangent `wide` has a radius of q = wide / sqrt(1 + wide^2) of the distance to its
+    // middle, which is 1 / (1 - q) times as far away as its front.
+    float wide = min(halves.x, halves.y) * length(vec3(rays[0].x, rays[1].x, rays[2].x)) / float(extent.x);
+    return vec4(plane.xyz, 2.0 * wide * (wide + sqrt(1.0 + wide * wide)) / plane.x);
 }

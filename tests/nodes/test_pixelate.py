@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 import pytest
 from halation.nodes.distort.pixelate import Pixelate
+from scipy.ndimage import map_coordinates
 
 
 @pytest.mark.parametrize("side", [(4, 4), (6, 2), (24, 12)])
@@ -43,9 +44,40 @@ def test_the_light_stays(run, hdr):
 
 
 def test_centers_are_pixels_of_the_picture(run, hdr):
-    picture = hdr(24, 12)
-    out = run(Pixelate(size=(4.0, 4.0), sampling="center"), {"image": picture})
-    np.testing.assert_array_equal(out, np.kron(picture[2::4, 2::4], np.ones((4, 4, 1))))
+    picture = hdr(25, 15)
+    out = run(Pixelate(size=(5.0, 3.0), sampling="center"), {"image": picture})
+    np.testing.assert_array_equal(out, np.kron(picture[1::3, 2::5], np.ones((3, 5, 1))))
+
+
+def test_centers_between_pixels_are_scipys_interpolation(run, hdr):
+    """Squares of an even number of pixels have their center between them; those at the far edges are cut off."""
+    picture, side = hdr(30, 18), (4.0, 2.5)
+    out = run(Pixelate(size=side, sampling="center"), {"image": picture})
+    first = [np.arange(0.0, count, step) for count, step in zip((30, 18), side, strict=True)]
+    across, down = (
+        0.5 * (low + np.minimum(low + step, count)) for low, step, count in zip(first, side, (30, 18), strict=True)
+    )
+    places = np.meshgrid(down - 0.5, across - 0.5, indexing="ij")
+    squares = np.stack(
+        [
+            map_coordinates(layer, places, order=1, mode="nearest")
+            for layer in np.moveaxis(picture.astype(np.float64), 2, 0)
+        ],
+        2,
+    )
+    y, x = np.mgrid[:18, :30] + 0.5
+    expected = squares[(y / side[1]).astype(int), (x / side[0]).astype(int)]
+    assert np.abs(out - expected).max() < 1e-6 * picture.max()
+
+
+def test_centers_lie_at_the_same_place_at_twice_the_size(run):
+    """A slope that both pictures show exactly has the same squares."""
+    small, large = (np.repeat(((np.arange(width) + 0.5) / width)[None, :, None], 4, 2) for width in (40, 80))
+    small, large = (np.repeat(row, 8, 0) for row in (small, large))
+    found = [
+        run(Pixelate(size=(side, 4.0), sampling="center"), {"image": p}) for side, p in ((4.0, small), (8.0, large))
+    ]
+    np.testing.assert_allclose(found[0][:4], found[1][:4, ::2], atol=1e-6)
 
 
 def test_a_proxy_has_as_many_squares(run, hdr):

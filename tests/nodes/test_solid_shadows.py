@@ -98,7 +98,8 @@ def test_a_ball_before_a_wall_has_a_round_shadow(run):
 def test_a_large_picture_has_the_whole_shadow(run):
     """Rays behind a ball walk through hundreds of pixels: a sixth of its shadow was missing when 512 steps ended them.
 
-    A tenth of it stays lit, also behind a thin ball: why is not known.
+    They also pass close behind its far side: a tenth was missing when the ball counted as deep as its front, which is
+    nearer than its middle, is wide.
     """
     camera, depth, place = render(meet_ball, size=(1440, 810))
     way = np.array((-0.9, -0.2, 0.25)) / np.linalg.norm((-0.9, -0.2, 0.25))
@@ -108,4 +109,4 @@ def test_a_large_picture_has_the_whole_shadow(run):
     node = ContactShadows(direction=tuple(way), length=4.0, softness=0.0, thickness=1.0)
     shadow = run(node, {"depth": depth, "camera": camera}, output="shadow")[..., 0]
     assert dark.sum() > 50000
-    assert (dark & (shadow > 0.01)).sum() <= 0.1 * dark.sum()
+    assert (dark & (shadow > 0.01)).sum() == 0
