@@ -1,22 +1,16 @@
 #include "lib/finite.glsl"
 
-// The picture at a place: between two pixels the mean of both, by how near they are.
-vec4 pixelate_between(vec2 place) {
-    ivec2 near = ivec2(floor(place - 0.5));
-    vec2 part = place - 0.5 - vec2(near);
-    vec4 sum = vec4(0.0);
-    for (int i = 0; i < 4; ++i) {
-        ivec2 off = ivec2(i & 1, i >> 1);
-        float weight = (off.x > 0 ? part.x : 1.0 - part.x) * (off.y > 0 ? part.y : 1.0 - part.y);
-        if (weight > 0.0) sum += weight * image_at(near + off);
-    }
-    return finite(sum);
-}
+// The part of a square that its center shows. A choice: a center of one pixel would be another one in a picture of
+// another size.
+const float PIXELATE_CENTER = 0.125;
 
 // The color of one square. Squares at the right and bottom edges are cut off by the picture.
 vec4 pixelate_square(vec2 side, int sampling) {
     vec2 first = vec2(pixel) * side, last = min(first + side, vec2(image_size));
-    if (sampling == SAMPLING_CENTER) return pixelate_between(0.5 * (first + last));
+    if (sampling == SAMPLING_CENTER) {
+        vec2 middle = 0.5 * (first + last), reach = 0.5 * min(max(PIXELATE_CENTER * side, 1.0), last - first);
+        first = middle - reach, last = middle + reach;
+    }
     vec4 sum = vec4(0.0);
     float total = 0.0;
     for (int y = int(first.y); y < int(ceil(last.y)); ++y)

@@ -14,20 +14,34 @@ def test_the_hash_is_the_papers():
     assert (hash3((1, 2, 3)) * 2**24).tolist() == [part >> 8 for part in (4204755366, 1223881804, 1500469937)]
 
 
+def cover_bands(y, band):
+    """Which thin bands rows of pixels with middles at `y` show, and how much of each; one band if it is thinner."""
+    if band <= 1.0:
+        return [(np.floor(y / band), np.ones(y.shape))]
+    first = np.floor((y - 0.5) / band)
+    rows = (first, first + 1.0)
+    return [
+        (row, np.clip(np.minimum(y + 0.5, (row + 1.0) * band) - np.maximum(y - 0.5, row * band), 0.0, 1.0))
+        for row in rows
+    ]
+
+
 @pytest.mark.parametrize("size", [(33, 26), (3, 2), (1, 1)])
 @pytest.mark.parametrize("hold", [1, 3])
 def test_bands_jump_as_the_hash_says(run, hdr, edge, size, hold):
     """On frame 1."""
     picture, height = hdr(*size), size[1]
     y, x = np.mgrid[: size[1], : size[0]] + 0.5
-    moved, apart = np.zeros(y.shape), np.zeros(y.shape)
-    for level, band in enumerate((0.3 * height, 0.075 * height)):
-        dice = hash3((np.floor(y / band), 1 // hold, level), (5, 0, 0))
-        jumps = dice[0] < 0.6
-        moved += jumps * 0.2 * height * (2 * dice[1] - 1)
-        apart += jumps * 0.05 * height * (2 * dice[2] - 1)
-    red, middle, blue = (sample_bilinear(picture, x + moved + way * apart, y, edge.scipy_map) for way in (1, 0, -1))
-    expected = np.stack([red[..., 0], middle[..., 1], blue[..., 2], middle[..., 3]], -1)
+    expected = np.zeros(picture.shape)
+    for row, weight in cover_bands(y, 0.075 * height):
+        moved, apart = np.zeros(y.shape), np.zeros(y.shape)
+        for level, many in enumerate((4, 1)):
+            dice = hash3((np.floor(row / many), 1 // hold, level), (5, 0, 0))
+            jumps = dice[0] < 0.6
+            moved += jumps * 0.2 * height * (2 * dice[1] - 1)
+            apart += jumps * 0.05 * height * (2 * dice[2] - 1)
+        red, middle, blue = (sample_bilinear(picture, x + moved + way * apart, y, edge.scipy_map) for way in (1, 0, -1))
+        expected += weight[..., None] * np.stack([red[..., 0], middle[..., 1], blue[..., 2], middle[..., 3]], -1)
     node = Glitch(amount=0.6, shift=0.2, colors=0.05, band=0.3, hold=hold, seed=5, edge=edge.name)
     assert np.abs(run(node, {"image": picture}) - expected).max() < 1e-5 * picture.max()
 

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 from halation.nodes.distort.pixelate import Pixelate
-from scipy.ndimage import map_coordinates
+from scipy.interpolate import interp1d
 
 
 @pytest.mark.parametrize("side", [(4, 4), (6, 2), (24, 12)])
@@ -49,35 +49,39 @@ def test_centers_are_pixels_of_the_picture(run, hdr):
     np.testing.assert_array_equal(out, np.kron(picture[1::3, 2::5], np.ones((3, 5, 1))))
 
 
-def test_centers_between_pixels_are_scipys_interpolation(run, hdr):
-    """Squares of an even number of pixels have their center between them; those at the far edges are cut off."""
-    picture, side = hdr(30, 18), (4.0, 2.5)
+def mean_between(picture, low, high):
+    """The means of rows of numbers between places, from their integral; [places, ...]."""
+    whole = np.concatenate([np.zeros((1, *picture.shape[1:])), np.cumsum(picture.astype(np.float64), 0)])
+    integral = interp1d(np.arange(len(whole)), whole, axis=0)
+    wide = (high - low).reshape(-1, *[1] * (picture.ndim - 1))
+    return (integral(high) - integral(low)) / wide
+
+
+@pytest.mark.parametrize("side", [(4.0, 2.5), (20.0, 9.0), (16.5, 12.0)])
+def test_centers_are_the_means_of_their_middles(run, hdr, side):
+    """Squares at the far edges are cut off, and so are their centers."""
+    picture = hdr(46, 30)
     out = run(Pixelate(size=side, sampling="center"), {"image": picture})
-    first = [np.arange(0.0, count, step) for count, step in zip((30, 18), side, strict=True)]
-    across, down = (
-        0.5 * (low + np.minimum(low + step, count)) for low, step, count in zip(first, side, (30, 18), strict=True)
-    )
-    places = np.meshgrid(down - 0.5, across - 0.5, indexing="ij")
-    squares = np.stack(
-        [
-            map_coordinates(layer, places, order=1, mode="nearest")
-            for layer in np.moveaxis(picture.astype(np.float64), 2, 0)
-        ],
-        2,
-    )
-    y, x = np.mgrid[:18, :30] + 0.5
+    squares = picture
+    for axis, (step, count) in enumerate(zip(reversed(side), (30, 46), strict=True)):
+        low = np.arange(0.0, count, step)
+        high = np.minimum(low + step, count)
+        reach = 0.5 * np.minimum(max(step / 8.0, 1.0), high - low)
+        middle = 0.5 * (low + high)
+        squares = np.moveaxis(mean_between(np.moveaxis(squares, axis, 0), middle - reach, middle + reach), 0, axis)
+    y, x = np.mgrid[:30, :46] + 0.5
     expected = squares[(y / side[1]).astype(int), (x / side[0]).astype(int)]
     assert np.abs(out - expected).max() < 1e-6 * picture.max()
 
 
-def test_centers_lie_at_the_same_place_at_twice_the_size(run):
-    """A slope that both pictures show exactly has the same squares."""
-    small, large = (np.repeat(((np.arange(width) + 0.5) / width)[None, :, None], 4, 2) for width in (40, 80))
-    small, large = (np.repeat(row, 8, 0) for row in (small, large))
-    found = [
-        run(Pixelate(size=(side, 4.0), sampling="center"), {"image": p}) for side, p in ((4.0, small), (8.0, large))
-    ]
-    np.testing.assert_allclose(found[0][:4], found[1][:4, ::2], atol=1e-6)
+@pytest.mark.parametrize("side", [(4.0, 4.0), (16.0, 8.0), (20.0, 12.0)])
+def test_centers_show_the_same_at_twice_the_size(run, hdr, side):
+    """Of a picture and one with each pixel twice as wide and high."""
+    small = hdr(32, 16)
+    large = np.kron(small, np.ones((2, 2, 1), np.float32))
+    one = run(Pixelate(size=side, sampling="center"), {"image": small})
+    other = run(Pixelate(size=(2.0 * side[0], 2.0 * side[1]), sampling="center"), {"image": large})
+    assert np.abs(other - np.kron(one, np.ones((2, 2, 1)))).max() < 1e-6 * small.max()
 
 
 def test_a_proxy_has_as_many_squares(run, hdr):
