@@ -1,6 +1,6 @@
 #include "lib/finite.glsl"
 
-// The part of a square that its center shows. A choice: a center of one pixel would be another one in a picture of
+// The part of the sides of a square that its center shows. A choice: a center of one pixel would be another one in a picture of
 // another size.
 const float PIXELATE_CENTER = 0.125;
 
