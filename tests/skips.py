@@ -55,6 +55,7 @@ REASONS: dict[str, Cause] = {
     "not installed as a command": "tool",
     "glslangValidator is not installed": "tool",
     "gdtoolkit is not installed": "tool",
+    "Mono is not installed": "tool",
     "slangpy is not installed": "tool",
     "there is no driver of Vulkan": "tool",
     "vkBasalt or Xvfb is not installed": "tool",

@@ -37,7 +37,7 @@ _EXTRAS = (
     ("denoise", "pyoidn", "the node denoise cannot work"),
     ("cluster", "distributed", "frames cannot be rendered on other machines"),
     ("fit", "cma", "halation fit cannot work"),
-    ("wgsl", "slangpy", "halation export --to wgsl and --to reshade cannot work"),
+    ("wgsl", "slangpy", "halation export --to wgsl, reshade and unity cannot work"),
 )
 """Extras, a distribution of each, and what is lacking without it."""
 

@@ -41,8 +41,8 @@ _Kind = Annotated[
     typer.Option(
         "--to",
         metavar="KIND",
-        help="isf, web, glsl, wgsl, python, reshade, godot, cube, clf or png; by default what the ending of the file "
-        "says.",
+        help="isf, web, glsl, wgsl, python, reshade, godot, unity, cube, clf or png; by default what the ending of "
+        "the file says.",
     ),
 ]
 _Output = Annotated[Path | None, typer.Option("-o", "--output", metavar="FILE", help="The file or folder to write.")]

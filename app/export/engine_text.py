@@ -19,6 +19,5 @@ def quote_text(text: str) -> str:
 
 
 def write_float(number: float) -> str:
-    """A number as code spells it, with the digits of 32 bits and never as a whole number."""
-    text = f"{np.float32(number):.9g}"
-    return text if any(letter in text for letter in ".en") else f"{text}.0"
+    """A number as code spells it, with the fewest digits that mean the same in 32 bits, never as a whole number."""
+    return str(np.float32(number))

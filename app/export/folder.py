@@ -46,18 +46,23 @@ def list_texts(package: Package) -> dict[str, str]:
 
 
 def write_package(
-    order: ExportOrder, package: Package, texts: Mapping[str, str], readers: Mapping[str, str]
+    order: ExportOrder,
+    package: Package,
+    texts: Mapping[str, str],
+    readers: Mapping[str, str] = MappingProxyType({}),
+    pixels: str = "pixels/{}.bin",
 ) -> ExportReport:
-    """Write texts by their names in the folder, pixels, and the assets that readers are. Raises OutputError."""
+    """Write texts by their names in the folder, pixels, and the assets that readers are. Raises OutputError.
+
+    `pixels` is the name of a file of pixels, with braces for its number.
+    """
     assert order.output is not None
     folder = order.output
     _make_folder(folder, order.sandbox)
     for name, text in {**texts, **{name: read_shipped_text(asset) for name, asset in readers.items()}}.items():
-        _make_folder((folder / name).parent, order.sandbox)
-        write_text_atomically(folder / name, text, sandbox=order.sandbox)
+        write_text_atomically(_make_room(folder, name, order.sandbox), text, sandbox=order.sandbox)
     for number, blob in enumerate(package.blobs):
-        _make_folder(folder / "pixels", order.sandbox)
-        write_bytes_atomically(folder / f"pixels/{number}.bin", blob, sandbox=order.sandbox)
+        write_bytes_atomically(_make_room(folder, pixels.format(number), order.sandbox), blob, sandbox=order.sandbox)
     passes = [len(plan["passes"]) for variants in package.document["plans"] for plan in variants]
     figures: dict[str, float | str] = {
         "programs": len(package.programs),
@@ -66,6 +71,13 @@ def write_package(
         "controls": len(package.document["controls"]),
     }
     return ExportReport((str(folder),), package.notes, figures)
+
+
+def _make_room(folder: Path, name: str, sandbox: Sandbox) -> Path:
+    """The path of a file in a folder, all folders of which are there."""
+    for parent in reversed(Path(name).parents[:-1]):
+        _make_folder(folder / parent, sandbox)
+    return folder / name
 
 
 def _make_folder(folder: Path, sandbox: Sandbox) -> None:

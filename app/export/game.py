@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
+import msgspec
 import numpy as np
 from halation.nodes import Kind
 
+from ..color.management import get_color_manager
 from ..errors import GraphError
-from ..graph import INPUTS, OUTPUTS, Graph, Port
+from ..graph import INPUTS, OUTPUTS, Graph, Port, color_settings
+from .order import ExportOrder
+from .package import Package, assemble_package
 from .package.curves import Record
 
 PICTURE, DEPTH, NORMAL = "picture", "depth", "normal"
@@ -33,14 +39,27 @@ def find_roles(graph: Graph) -> dict[str, str]:
     return roles
 
 
-def bind_blank(graph: Graph, size: tuple[int, int]) -> dict[str, np.ndarray]:
+def assemble_for_game(order: ExportOrder, host: str, light: str) -> Package:
+    """The package of a graph that `host` draws, whose light is linear Rec.709: `light` says so in words.
+
+    Raises GraphError for other working spaces, for layers that no game gives and for meshes; the errors of compiling.
+    """
+    if not get_color_manager(color_settings(order.graph), order.sandbox).is_plain:
+        raise GraphError(f"its working space is not linear Rec.709, which {light}")
+    _refuse_layers(order.graph, order.target, host)
+    size = order.size or USUAL_SIZE
+    inputs = {**order.inputs, **_bind_blank(order.graph, size)}
+    return assemble_package(msgspec.structs.replace(order, size=size, inputs=inputs), host)
+
+
+def _bind_blank(graph: Graph, size: tuple[int, int]) -> dict[str, np.ndarray]:
     """Pictures of a size for what the game gives. Nobody reads their pixels, but passes are planned for their size."""
     width, height = size
     channels = {PICTURE: 4, DEPTH: 1, NORMAL: 3}
     return {name: np.zeros((height, width, channels[role]), np.float32) for name, role in find_roles(graph).items()}
 
 
-def refuse_layers(graph: Graph, target: Port, host: str) -> None:
+def _refuse_layers(graph: Graph, target: Port, host: str) -> None:
     """Raise GraphError for a layer that a picture of the graph needs and no game gives. `host` is what reads it."""
     shown = graph.links.get(target) if target.node == OUTPUTS else target
     needed = {shown.node, *graph.upstream(shown.node)} if shown else set[str]()
@@ -59,3 +78,14 @@ def choose_roles(graph: Graph, sources: list[Record], used: set[int]) -> dict[in
     known = find_roles(graph)
     inputs = {at: sources[at]["name"] for at in sorted(used) if sources[at]["is_end"]}
     return {at: known[name] for at, name in inputs.items() if name in known}
+
+
+def list_plans(document: Record) -> Iterator[Record]:
+    """The passes of all variants, for the first frame and those after it."""
+    return (plan for variants in document["plans"] for plan in variants)
+
+
+def choose_used_roles(graph: Graph, document: Record) -> dict[int, str]:
+    """What a game gives for each source that any plan reads, by number."""
+    surfaces = (surface for plan in list_plans(document) for surface in plan["surfaces"])
+    return choose_roles(graph, document["sources"], {each["source"] for each in surfaces if "source" in each})

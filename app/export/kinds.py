@@ -45,6 +45,7 @@ KINDS: Mapping[str, ExportKind] = MappingProxyType(
             ),
             ExportKind("reshade", ".fx", "an effect of ReShade, for games", "reshade.files", "export_effect"),
             ExportKind("godot", "", "an effect for cameras of the game engine Godot", "godot.files", "export_godot"),
+            ExportKind("unity", "", "an effect for cameras of the game engine Unity", "unity.files", "export_unity"),
             ExportKind("cube", ".cube", "a table of colors with a shaper, for grading programs", "lut", "export_cube"),
             ExportKind("clf", ".clf", "a table in the Common LUT Format (SMPTE ST 2136)", "lut", "export_clf"),
             ExportKind("png", ".png", "a table as a strip of squares, for game engines", "lut", "export_strip"),

@@ -10,68 +10,21 @@ import re
 import shutil
 import struct
 import subprocess
-from collections.abc import Mapping
 from pathlib import Path
 from types import ModuleType
-from typing import Any
 
 import numpy as np
 import pytest
-from halation.cli.program import run
-from halation.export.shipped_files import read_shipped_text
+from game_looks import export, export_look, list_knobs, open_reader, refuse_unfit_graphs
 
 needs_compiler = pytest.mark.skipif(not shutil.which("glslangValidator"), reason="glslangValidator is not installed")
 needs_grammar = pytest.mark.skipif(importlib.util.find_spec("gdtoolkit") is None, reason="gdtoolkit is not installed")
-
-LOOK: Mapping[str, Any] = {
-    "nodes": {
-        "glow": {"type": "bloom"},
-        "tint": {"type": "grade"},
-        "grain": {"type": "film_grain", "values": {"amount": 0.1}},
-        "poster": {"type": "posterize"},
-    },
-    "links": {
-        "glow.image": "light.out",
-        "tint.image": "glow.out",
-        "poster.image": "tint.out",
-        "grain.image": "poster.out",
-        "outputs.image": "grain.out",
-    },
-    "controls": {
-        "size": {"target": "glow.radius", "doc": "How far it reaches."},
-        "glow": {"target": "glow.intensity"},
-        "gain": {"target": "tint.gain"},
-        "levels": {"target": "poster.levels"},
-    },
-    "settings": {"frames": [1, 12]},
-}
 
 
 @pytest.fixture(scope="module")
 def look(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a look with controls of several kinds, one of which changes passes."""
-    folder = tmp_path_factory.mktemp("godot")
-    hostile = 'x"\n\tpass\n""" # \\'
-    controls = {"stops": {"target": "light.stops", "label": hostile, "doc": hostile}}
-    graph = {
-        "halation": 1,
-        "inputs": {"beauty": {"type": "Image"}},
-        "outputs": {"image": {"type": "Image"}},
-        **LOOK,
-        "nodes": {"light": {"type": "exposure"}, **LOOK["nodes"]},
-        "links": {"light.image": "inputs.beauty", **LOOK["links"]},
-        "controls": {**LOOK["controls"], **controls},
-    }
-    (folder / "look.json").write_text(json.dumps(graph), encoding="utf-8")
-    words = ["export", str(folder / "look.json"), "--to", "godot", "-o", str(folder / "look"), "--size", "96x64"]
-    assert run(words) == 0
-    return folder / "look"
-
-
-def export(cli, graph: Path, folder: Path) -> Path:
-    result = cli("export", graph, "--to", "godot", "-o", folder / "look", "--size", "96x64")
-    assert result.code == 0, result.err
-    return folder / "look"
+    return export_look(tmp_path_factory.mktemp("godot"), "godot")
 
 
 def reflect(text: str, stage: str, folder: Path) -> tuple[dict[str, tuple[int, int]], int]:
@@ -128,7 +81,7 @@ def test_controls_are_what_the_inspector_shows(cli, graphs, tmp_path: Path) -> N
             "color": {"target": "paint.color"},
         },
     )
-    text = (export(cli, graph, tmp_path) / "halation_graph.gd").read_text("utf-8")
+    text = (export(cli, graph, tmp_path / "look", "godot") / "halation_graph.gd").read_text("utf-8")
     assert "@export_range(-10.0, 10.0, 0.02) var look_stops: float = 1.0" in text
     assert re.search(r'^@export_enum\("\w+", .*\) var look_kind: int = \d+$', text, re.MULTILINE)
     assert re.search(r"^@export var look_color: Color = Color\([\d., ]+\)$", text, re.MULTILINE)
@@ -191,12 +144,9 @@ def translate_numbers(folder: Path) -> ModuleType:
 
 def test_the_script_computes_the_numbers_of_the_reference_reader(look: Path) -> None:
     """For controls at random, against the reader in numpy that is proved by its pixels."""
-    reader = ModuleType("package_values")
-    exec(compile(read_shipped_text("package_values.py.txt"), "package_values.py", "exec"), reader.__dict__)
-    reference, theirs = reader.Package(look), translate_numbers(look)
+    reference, theirs = open_reader(look), translate_numbers(look)
     document = reference.document
-    knobs = [knob for control in document["controls"] for knob in control["knobs"]]
-    knobs.append({"name": "frame", "low": 1.0, "high": 12.0})
+    knobs = list_knobs(document)
     random = np.random.default_rng(7)
     seen = set[int]()
     for _ in range(12):
@@ -222,15 +172,7 @@ def test_blocks_are_packed_by_std140(look: Path) -> None:
 
 
 def test_what_no_game_gives_is_refused(cli, graphs, tmp_path: Path) -> None:
-    other = graphs(
-        inputs={"albedo": {"type": "Image", "file": "shot.exr", "layer": "Cool"}},
-        nodes={"sum": {"type": "merge"}},
-        links={"sum.a": "inputs.albedo", "sum.b": "light.out", "outputs.image": "sum.out"},
-    )
-    drawn = graphs("drawn.json", nodes={"ball": {"type": "scene"}}, links={"outputs.image": "ball.color"})
-    for graph, word in ((other, "input 'albedo'"), (drawn, "draws meshes")):
-        result = cli("export", graph, "--to", "godot", "-o", tmp_path / "no", "--size", "16x16")
-        assert result.code == 3 and word in result.err and not (tmp_path / "no").exists(), result.err
+    refuse_unfit_graphs(cli, graphs, tmp_path / "no", "godot")
 
 
 def test_depth_and_normals_come_from_the_game(cli, graphs, tmp_path: Path) -> None:
@@ -242,7 +184,7 @@ def test_depth_and_normals_come_from_the_game(cli, graphs, tmp_path: Path) -> No
         nodes={"mist": {"type": "fog"}},
         links={"mist.image": "light.out", "mist.depth": "inputs.depth", "outputs.image": "mist.out"},
     )
-    folder = export(cli, graph, tmp_path)
+    folder = export(cli, graph, tmp_path / "look", "godot")
     document = json.loads((folder / "passes.json").read_text("utf-8"))
     names = {source["name"]: str(number) for number, source in enumerate(document["sources"])}
     assert document["roles"] == {names["beauty"]: "picture", names["depth"]: "depth"}

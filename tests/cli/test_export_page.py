@@ -3,21 +3,15 @@
 from __future__ import annotations
 
 import base64
-import json
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import OpenImageIO as oiio
 import pytest
 from browser import CHROMIUM, Browser
-from halation.media.comparison.metrics import measure_flip
 from halation.presets import paths
-
-SIZE = "480x270"
-SHARES = (0.3, 0.85)
-"""Where on a slider the other settings are, from its low to its high end."""
+from shown_pages import SIZE, compare, list_settings, read_picture, show, take
 
 pytestmark = [
     pytest.mark.nightly,
@@ -30,46 +24,6 @@ pytestmark = [
 def browser() -> Iterator[Browser]:
     with Browser() as opened:
         yield opened
-
-
-def read_picture(path: Path) -> np.ndarray:
-    """Codes from 0 to 255 over black: [height, width, 3]."""
-    straight = oiio.ImageSpec()
-    straight["oiio:UnassociatedAlpha"] = 1
-    pixels = 255.0 * oiio.ImageBuf(str(path), 0, 0, straight).get_pixels(oiio.FLOAT)
-    if pixels.shape[2] == 4:
-        pixels = pixels[..., :3] * pixels[..., 3:] / 255.0
-    return np.broadcast_to(pixels, (*pixels.shape[:2], 3))
-
-
-def show(browser: Browser, page: Path) -> None:
-    """Open a page and wait for its first picture."""
-    browser.open(page)
-    browser.wait_until("document.body.classList.contains('ready')")
-    assert browser.run("document.getElementById('fault').textContent") == ""
-
-
-def take(browser: Browser, folder: Path, knobs: dict[str, float]) -> np.ndarray:
-    """What the page shows at values of knobs; all others are as in the graph."""
-    code = f"Object.assign(halation, {{knobs: {{...halation.rest, ...{json.dumps(knobs)}}}}}).restart()"
-    url = browser.run(f"{code}; halation.show(); halation.canvas.toDataURL()")
-    (folder / "theirs.png").write_bytes(base64.b64decode(url.partition(",")[2]))
-    return read_picture(folder / "theirs.png")
-
-
-def list_settings(controls: list[dict[str, Any]]) -> Iterator[tuple[tuple[str, ...], dict[str, float]]]:
-    """Options of `halation render`, and the same as values of knobs: none, then two settings of each control."""
-    yield (), {}
-    for control in controls:
-        knobs = control["knobs"]
-        for share in SHARES:
-            numbers = [knob["low"] + share * (knob["high"] - knob["low"]) for knob in knobs]
-            if control["kind"] in ("whole", "switch", "choice"):
-                numbers = [round(number) for number in numbers]
-            words = {"switch": ["false", "true"], "choice": control.get("choices")}.get(control["kind"])
-            text = words[numbers[0]] if words else ",".join(map(str, numbers))
-            values = {knob["name"]: float(number) for knob, number in zip(knobs, numbers, strict=True)}
-            yield ("--set", f"{control['name']}={text}"), values
 
 
 @pytest.mark.parametrize("preset", [path.stem for path in paths()])
@@ -86,9 +40,7 @@ def test_a_page_shows_what_we_render(cli, browser: Browser, tmp_path: Path, pres
     for options, knobs in list_settings(browser.run("halation.package.controls")):
         words = ("render", preset, "-o", picture, "--size", SIZE, "--dither", "none", *options)
         assert cli(*words).code == 0
-        ours, theirs = read_picture(picture), take(browser, tmp_path, knobs)
-        difference = float(np.percentile(np.abs(ours - theirs).max(axis=2), 99.0 if has_meshes else 99.9))
-        flip = measure_flip(theirs / 255.0, ours / 255.0, linear=False)
+        difference, flip = compare(picture, take(browser, tmp_path, knobs), has_meshes)
         if difference > 2.01 or flip > 0.01:
             worst[" ".join(options)] = round(difference, 1), round(flip, 4)
     assert not worst and not browser.messages

@@ -18,10 +18,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from exr_files import read, write_exr
+from game_looks import LOOK, SIZE, export, refuse_unfit_graphs
 
 HERE = Path(__file__).parent
 LAYER = Path("/usr/share/vulkan/implicit_layer.d/vkBasalt.json")
-SIZE = (96, 64)
 FAR = 40.0
 """The depth of the farthest point."""
 PATIENCE = 120.0
@@ -124,14 +124,6 @@ def play(screen: tuple[str, Path], tmp_path: Path) -> Play:
     return run
 
 
-def export(cli, graph: Path, folder: Path) -> Path:
-    """The effect that the command writes, at the size of the picture."""
-    effect = folder / "look.fx"
-    result = cli("export", graph, "-o", effect, "--size", f"{SIZE[0]}x{SIZE[1]}")
-    assert result.code == 0, result.err
-    return effect
-
-
 def set_control(effect: Path, name: str, number: str) -> None:
     """What a user does with a slider: a shader has no other place for its value here."""
     text, count = re.subn(rf"(uniform \w+ {name} < .* > = ).*;", rf"\g<1>{number};", effect.read_text("utf-8"))
@@ -159,37 +151,16 @@ def compare(play: Play, effect: Path, ours: np.ndarray, channels: str = "y", fra
         assert np.abs(theirs - ours[..., "xyz".index(channel)]).max() <= 2e-3 * np.abs(ours).max()
 
 
-LOOK = {
-    "nodes": {
-        "glow": {"type": "bloom", "values": {"radius": 0.1}},
-        "tone": {"type": "saturation", "values": {"saturation": 0.5}},
-        "grain": {"type": "film_grain", "values": {"amount": 0.1}},
-    },
-    "links": {
-        "glow.image": "light.out",
-        "tone.image": "glow.out",
-        "grain.image": "tone.out",
-        "outputs.image": "grain.out",
-    },
-    "controls": {
-        "stops": {"target": "light.stops", "label": "Brightness"},
-        "glow": {"target": "glow.intensity"},
-        "size": {"target": "glow.radius"},
-        "color": {"target": "tone.saturation"},
-    },
-}
-
-
 @needs_slang
 @needs_game
 def test_a_game_shows_our_pixels(cli, graphs, play: Play, tmp_path: Path) -> None:
     """As codes on the screen, which are rounded, and as light with other settings of controls at another frame."""
     graph = graphs(**LOOK)
-    effect = export(cli, graph, tmp_path)
+    effect = export(cli, graph, tmp_path / "look.fx", "reshade")
     assert cli("export", graph, "-o", effect, "--size", "96x64", "--frame", 1).code == 0
     codes = encode(render(cli, graph, tmp_path, "--frame", 1)[..., :3])
     assert np.abs(play(effect) - codes).max() <= 0.75  # half a step of rounding, and what floats round before it
-    effect = export(cli, graph, tmp_path)
+    effect = export(cli, graph, tmp_path / "look.fx", "reshade")
     for name, number in (("control_stops", "2.5"), ("control_color", "1.7"), ("still_frame", "7")):
         set_control(effect, name, number)
     ours = render(cli, graph, tmp_path, "--set", "stops=2.5", "--set", "color=1.7", "--frame", 7)
@@ -207,7 +178,7 @@ def test_tables_and_lists_are_read_from_png_files(cli, graphs, play: Play, tmp_p
     }
     links = {"look.image": "light.out", "title.image": "look.out", "outputs.image": "title.out"}
     graph = graphs(nodes=nodes, links=links)
-    effect = export(cli, graph, tmp_path)
+    effect = export(cli, graph, tmp_path / "look.fx", "reshade")
     assert list(tmp_path.glob("look_fx_*.png"))
     compare(play, effect, render(cli, graph, tmp_path))
 
@@ -220,7 +191,7 @@ def test_depth_comes_from_the_game(cli, graphs, play: Play, tmp_path: Path) -> N
         nodes={"fog": {"type": "fog"}},
         links={"fog.image": "light.out", "fog.depth": "inputs.depth", "outputs.image": "fog.out"},
     )
-    effect = export(cli, graph, tmp_path)
+    effect = export(cli, graph, tmp_path / "look.fx", "reshade")
     assert '#include "ReShade.fxh"' in effect.read_text("utf-8")
     set_control(effect, "depth_of_far_plane", str(FAR))
     compare(play, effect, render(cli, graph, tmp_path))
@@ -235,7 +206,7 @@ def test_normals_are_made_of_depth(cli, graphs, play: Play, tmp_path: Path) -> N
         outputs={"image": {"type": "Vector", "width": 3}},
         links={"outputs.image": "inputs.normal"},
     )
-    effect = export(cli, graph, tmp_path)
+    effect = export(cli, graph, tmp_path / "look.fx", "reshade")
     width, height = SIZE
     codes = np.full((height, width, 4), 255, np.uint8)
     codes[..., 0] = 100 + np.arange(width)
@@ -259,7 +230,7 @@ def test_frames_remember_each_other(cli, graphs, play: Play, tmp_path: Path) -> 
         links={"back.image": "light.out", "outputs.image": "back.out"},
         settings={"frames": [1, 20]},
     )
-    effect = export(cli, graph, tmp_path)
+    effect = export(cli, graph, tmp_path / "look.fx", "reshade")
     ours = render(cli, graph, tmp_path, "--frame", 16)
     compare(play, effect, ours, frames=16)
     assert np.abs(render(cli, graph, tmp_path, "--frame", 1) - ours).max() > 0.05
@@ -289,10 +260,4 @@ def test_names_are_text(cli, graphs, tmp_path: Path) -> None:
 
 @needs_slang
 def test_what_reshade_cannot_hold_is_refused(cli, graphs, tmp_path: Path) -> None:
-    other = graphs(
-        inputs={"albedo": {"type": "Image", "file": "shot.exr", "layer": "Cool"}},
-        nodes={"sum": {"type": "merge"}},
-        links={"sum.a": "inputs.albedo", "sum.b": "light.out", "outputs.image": "sum.out"},
-    )
-    result = cli("export", other, "-o", tmp_path / "no.fx", "--size", "16x16")
-    assert result.code == 3 and "input 'albedo'" in result.err and not (tmp_path / "no.fx").exists()
+    refuse_unfit_graphs(cli, graphs, tmp_path / "no.fx", "reshade")

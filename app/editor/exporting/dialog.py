@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 _LABELS = 120.0
 _TITLES = ("Format", "Nodes", "Output", "Size", "Frames", "Colors", "Encoding", "Range")
 _TABLES = ("cube", "clf", "png")
-_PAGES = ("web", "glsl", "wgsl", "reshade", "godot")
+_PAGES = ("web", "glsl", "wgsl", "reshade", "godot", "unity")
 _ENCODINGS = ("usual", "linear", "srgb")
 _REST = 0.4
 """Seconds after the last change until the document is tried: a size is typed in several letters."""

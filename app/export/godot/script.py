@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from ..engine_text import quote_text, write_name
+from ..engine_text import quote_text, write_float, write_name
 from ..package.curves import Record
 
 _GROUP = "look"
@@ -88,10 +88,4 @@ def _write_knobs(name: str, control: Record) -> list[str]:
 
 
 def _join(numbers: Iterable[float]) -> str:
-    return ", ".join(map(_write_number, numbers))
-
-
-def _write_number(number: float) -> str:
-    """A number that stays one of fractions: Godot would divide whole ones without a rest."""
-    text = f"{number:.7g}"  # all digits of 32 bits, which uniforms have
-    return text if set(text) & set(".en") else f"{text}.0"
+    return ", ".join(map(write_float, numbers))

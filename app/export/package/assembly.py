@@ -31,17 +31,20 @@ class Package(Struct, frozen=True):
     blobs: tuple[bytes, ...]
 
 
-def assemble_package(order: ExportOrder) -> Package:
-    """The package of one output of a graph. Raises the errors of compiling it."""
-    return _Assembly(order).assemble()
+def assemble_package(order: ExportOrder, game: str = "") -> Package:
+    """The package of one output of a graph. Raises the errors of compiling it.
+
+    `game` is what will draw it, if it draws over pictures alone: then meshes are refused.
+    """
+    return _Assembly(order, game).assemble()
 
 
 class _Assembly:
     """One package: the planner, and the parts so far."""
 
-    def __init__(self, order: ExportOrder) -> None:
+    def __init__(self, order: ExportOrder, game: str) -> None:
         self.order = order
-        self.planner = PointPlanner(order)
+        self.planner = PointPlanner(order, game)
         self.parts = SharedParts(self.planner.provider.load_pixels)
         self.samples: dict[str, dict[float, Sample]] = {}
         """Samples of each knob while all others rest, of the last phase."""

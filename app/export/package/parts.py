@@ -123,9 +123,11 @@ class SharedParts:
         return self._pictures[picture]
 
     def add_table(self, table: LookupTable) -> Record:
-        """A table of a color library."""
+        """A table of a color library. No device has textures of three floats: a fourth channel is 0."""
         if table.sampler not in self._tables:
             values = np.ascontiguousarray(table.values, np.float32)
+            if values.shape[-1] == 3:
+                values = np.concatenate([values, np.zeros_like(values[..., :1])], axis=-1)
             self._tables[table.sampler] = {
                 "sampler": table.sampler,
                 "shape": list(values.shape),

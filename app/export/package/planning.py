@@ -54,8 +54,9 @@ class Phase:
 class PointPlanner:
     """Plans one output of a graph at points, and remembers the samples."""
 
-    def __init__(self, order: ExportOrder) -> None:
-        self.order, self.graph = order, order.graph
+    def __init__(self, order: ExportOrder, game: str = "") -> None:
+        """`game` is what draws over pictures alone, for which meshes are refused."""
+        self.order, self.graph, self.game = order, order.graph, game
         self.provider = MediaProvider(sandbox=order.sandbox)
         self.controls, self.notes = find_knob_controls(self.graph, _has_input)
         self._bindings = self.provider.bind(self.graph, order.inputs)
@@ -71,7 +72,7 @@ class PointPlanner:
             frame, order = round(point.get(FRAME, self.first)), self.order
             request = Request({OUTPUT: order.target}, self._bindings, order.size, frame=frame, memories=memories)
             plan = planner.plan(graph, request, self.provider, target=TARGET)
-            _refuse_unsuitable(plan)
+            _refuse_unsuitable(plan, self.game)
             self.remembers = self.remembers or bool(plan.memories)
             return take_apart(plan, self.provider.load_pixels)
 
@@ -154,7 +155,7 @@ def _thin(places: list[float]) -> list[float]:
     return sorted(chosen | {places[-1]})
 
 
-def _refuse_unsuitable(plan: Plan) -> None:
+def _refuse_unsuitable(plan: Plan, game: str) -> None:
     """Raise GraphError for a plan that other programs cannot run."""
     if plan.tiling is not None:
         raise GraphError(f"{plan.tiling.why}, and a package has no tiles: export it smaller with --size")
@@ -164,5 +165,12 @@ def _refuse_unsuitable(plan: Plan) -> None:
             raise GraphError(
                 f"{describe_owner(owner)} is a shader of another format, which a package does not translate: use its "
                 "file, or mute the node",
+                node=owner,
+            )
+        if render_pass.mesh and game:
+            owner = render_pass.nodes[-1]
+            raise GraphError(
+                f"{describe_owner(owner)} draws meshes, and {game} draws over pictures alone: "
+                "render it to a file first",
                 node=owner,
             )

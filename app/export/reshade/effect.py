@@ -14,13 +14,14 @@ from ..order import ExportOrder
 from ..package import Package
 from ..package.curves import Record
 from ..shipped_files import read_shipped_text
+from ..slang.hlsl import HlslProgram
 from .controls import FRAME, write_controls, write_time
 from .numbers import NumberPicture
 from .parts import EffectParts, EffectPass
 from .pictures import PackedPictures
 from .programs import write_pass
 from .sources import write_sources
-from .translation import FxProgram, write_fx
+from .translation import write_fx
 
 _SCREEN = """sampler2D {texture}Smooth {{ Texture = {texture}; }};
 float4 draw_screen(float4 position : SV_Position) : SV_Target {{
@@ -54,7 +55,7 @@ class _EffectWriter:
     order: ExportOrder
     stem: str
     notes: list[str] = field(default_factory=list[str])
-    _programs: dict[int, FxProgram] = field(default_factory=dict[int, FxProgram])
+    _programs: dict[int, HlslProgram] = field(default_factory=dict[int, HlslProgram])
 
     def write(self) -> Effect:
         control_lines, knobs = self._write_values()
@@ -150,12 +151,6 @@ class _EffectWriter:
 
     def _add_pass(self, parts: EffectParts, number: int, record: Record, names: list[str]) -> None:
         owner = record["nodes"][-1] if record["nodes"] else ""
-        if "mesh" in record:
-            raise GraphError(
-                f"{describe_owner(owner)} draws meshes, and an effect of ReShade draws over pictures alone: render it "
-                "to a file first",
-                node=owner,
-            )
         program = self._translate(record["program"], owner)
         for table in record.get("tables", ()):
             parts.add_table(table)
@@ -164,7 +159,7 @@ class _EffectWriter:
         parts.lines += [f"namespace pass_{number} {{", *functions, "}"]
         parts.add_pass(f"pass_{number}::draw", *(names[target] for target in record["targets"]))
 
-    def _translate(self, number: int, owner: str) -> FxProgram:
+    def _translate(self, number: int, owner: str) -> HlslProgram:
         if number not in self._programs:
             try:
                 self._programs[number] = write_fx(self.package.programs[number][0])

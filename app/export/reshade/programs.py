@@ -3,36 +3,31 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping
 
 import numpy as np
 
 from ..engine_text import write_float
 from ..package.curves import Record
-from ..slang.source import COLUMNS
+from ..slang.hlsl import HlslProgram, HlslUniform
 from .numbers import Array, NumberPicture
 from .pictures import PackedPictures
-from .translation import FxProgram, FxUniform
 
 _CHANNELS = "xyzw"
 
 
 def write_pass(
-    program: FxProgram, record: Record, samplers: list[str], numbers: NumberPicture, tables: Mapping[str, str]
+    program: HlslProgram, record: Record, samplers: list[str], numbers: NumberPicture, tables: Mapping[str, str]
 ) -> list[str]:
     """The functions of one pass; `draw` is the one of the pixels.
 
     `samplers` are the names for `t0`, `t1`, ...; `tables` gives the function that samples a table.
     """
-    text = program.text
     lines: list[str] = []
     for uniform in program.uniforms:
-        name = uniform.name.removesuffix(COLUMNS)
+        name = uniform.own_name
         slot = record["weights"] if name == "weights" and "weights" in record else record["uniforms"].get(name)
         lines += _write_uniform(uniform, slot, numbers)
-        if not uniform.count:
-            text = re.sub(rf"\bgiven_{uniform.name}\b", f"given_{uniform.name}()", text)
     for name in program.pictures:
         if name in tables:
             lines.append(f"float4 fetch_{name}(int3 place) {{ return {tables[name]}_at(place.xy); }}")
@@ -40,7 +35,7 @@ def write_pass(
             sampler = samplers[int(name.removeprefix("t"))]
             lines.append(f"float4 fetch_{name}(int3 place) {{ return FETCH({sampler}, place.x, place.y); }}")
     lines += [line for name in program.tables for line in _write_table_call(name, tables[name])]
-    return [*lines, text]
+    return [*lines, program.text]
 
 
 def write_table(record: Record, values: Array, pictures: PackedPictures, number: int) -> tuple[str, list[str]]:
@@ -87,9 +82,9 @@ def _write_table_call(name: str, table: str) -> list[str]:
     ]
 
 
-def _write_uniform(uniform: FxUniform, slot: int | None, numbers: NumberPicture) -> list[str]:
+def _write_uniform(uniform: HlslUniform, slot: int | None, numbers: NumberPicture) -> list[str]:
     name, type_ = f"given_{uniform.name}", uniform.type
-    group = 3 if uniform.name.endswith(COLUMNS) else uniform.width
+    group = uniform.group
     if slot is not None and numbers.changes(slot):
         first = numbers.add_slot(slot, group)
         place, head = (f"{first} + at", "int at") if uniform.count else (str(first), "")
@@ -108,7 +103,7 @@ def _write_uniform(uniform: FxUniform, slot: int | None, numbers: NumberPicture)
     ]
 
 
-def _write_value(uniform: FxUniform, numbers: Array) -> str:
+def _write_value(uniform: HlslUniform, numbers: Array) -> str:
     padded = np.pad(numbers[: uniform.width], (0, max(uniform.width - len(numbers), 0)))
     end = "u" if uniform.base == "uint" else ""
     parts = [write_float(number) if uniform.base == "float" else f"{round(number)}{end}" for number in padded.tolist()]

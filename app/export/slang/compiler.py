@@ -14,7 +14,7 @@ from typing import Any, Literal
 
 from ...errors import UsageError
 
-HOW_TO_INSTALL = "--to wgsl and --to reshade need the Slang compiler: run pip install 'halation[wgsl]'"
+HOW_TO_INSTALL = "--to wgsl, reshade and unity need the Slang compiler: run pip install 'halation[wgsl]'"
 
 Language = Literal["wgsl", "hlsl"]
 
