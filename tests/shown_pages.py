@@ -22,7 +22,9 @@ def read_picture(path: Path) -> np.ndarray:
     """Codes from 0 to 255 over black: [height, width, 3]."""
     straight = oiio.ImageSpec()
     straight["oiio:UnassociatedAlpha"] = 1
-    pixels = 255.0 * oiio.ImageBuf(str(path), 0, 0, straight).get_pixels(oiio.FLOAT)
+    read = oiio.ImageBuf(str(path), 0, 0, straight).get_pixels(oiio.FLOAT)
+    assert read is not None
+    pixels = 255.0 * read
     if pixels.shape[2] == 4:
         pixels = pixels[..., :3] * pixels[..., 3:] / 255.0
     return np.broadcast_to(pixels, (*pixels.shape[:2], 3))
