@@ -220,6 +220,7 @@ def find_item_faults(value: Value, setting: object) -> Iterator[tuple[tuple[str,
         return
     if len(items) > value.items.most:
         yield (), f"{len(items)} {value.items.noun}s are too many: it takes at most {value.items.most}"
+        return  # what they name would take time with the square of their number
     for name, item in items.items():
         kind = value.items.by_name.get(item.kind)
         if fault := name_fault(name, value.items.noun):
@@ -246,11 +247,11 @@ def _find_name_faults(
     for field in kind.fields:
         if not kind.fields[field].names_item:
             continue
-        chain, other = [name], str(items[name].fields.get(field, ""))
+        chain, other = dict.fromkeys([name]), str(items[name].fields.get(field, ""))  # in order, and found at once
         if other and other not in items:
             yield (name, field), f"there is no {declared.noun} '{make_printable(other)}'{did_you_mean(other, items)}"
         while other in items and other not in chain:
-            chain.append(other)
+            chain[other] = None
             other = str(items[other].fields.get(field, ""))
         if other == name:
             yield (name, field), f"it leads back to itself: {' -> '.join((*chain, name))}"
