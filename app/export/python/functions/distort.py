@@ -227,21 +227,23 @@ def polar(
 
 
 def pixelate(image: Array, size: tuple[float, float], sampling: str) -> Array:
-    """Coarse squares, each the average of the pixels that it covers; border pixels count by their part."""
+    """Coarse squares, each the average of the pixels that it covers; border pixels count by their part.
+
+    Centers are the averages of the middle eighth of the sides of squares, at least of a pixel.
+    """
     for axis, side in ((1, max(size[0], 1.0)), (0, max(size[1], 1.0))):
         count = image.shape[axis]
         first = np.arange(ceil(count / side)) * side
         last = np.minimum(first + side, count)
-        square = ((np.arange(count) + 0.5) / side).astype(int)
         if sampling == "center":
-            squares = np.take(image, np.floor(0.5 * (first + last)).astype(int), axis=axis)
-        else:
-            pixel = np.arange(count)
-            cover = np.minimum(pixel + 1.0, last[:, None]) - np.maximum(pixel, first[:, None])
-            cover = np.maximum(cover, 0.0)
-            cover /= cover.sum(axis=1, keepdims=True)
-            squares = np.moveaxis(np.tensordot(cover, image, (1, axis)), 0, axis)
-        image = np.take(squares, square, axis=axis)
+            middle, reach = 0.5 * (first + last), 0.5 * np.minimum(max(0.125 * side, 1.0), last - first)
+            first, last = middle - reach, middle + reach
+        pixel = np.arange(count)
+        cover = np.minimum(pixel + 1.0, last[:, None]) - np.maximum(pixel, first[:, None])
+        cover = np.maximum(cover, 0.0)
+        cover /= cover.sum(axis=1, keepdims=True)
+        squares = np.moveaxis(np.tensordot(cover, image, (1, axis)), 0, axis)
+        image = np.take(squares, ((pixel + 0.5) / side).astype(int), axis=axis)
     return image
 
 

@@ -184,20 +184,30 @@ def crosshatch(
 def glitch(
     image: Array, amount: float, shift: float, colors: float, band: float, hold: int, seed: int, edge: Edge, frame: int
 ) -> Array:
-    """Bands that jump sideways, as in damaged video: wide ones, and others of a quarter of their height."""
+    """Bands that jump sideways, as in damaged video: wide ones, and others of a quarter of their height.
+
+    A row of pixels where two bands meet shows both, by what they cover; thinner bands are seen in its middle.
+    """
     height, width = image.shape[:2]
-    places = grid(width, height)
-    moved, apart = np.zeros((height, width, 1)), np.zeros((height, width, 1))
-    for level, part in enumerate((band, 0.25 * band)):
-        row = np.floor(places[..., 1:] / part)
-        cells = np.concatenate([row, np.full_like(row, frame // hold), np.full_like(row, level)], axis=-1)
-        dice = hash3(cells, np.array([seed, 0, 0]))
-        jumps = dice[..., :1] < amount
-        moved += np.where(jumps, shift * (2.0 * dice[..., 1:2] - 1.0), 0.0)
-        apart += np.where(jumps, colors * (2.0 * dice[..., 2:] - 1.0), 0.0)
-    right = np.array([1.0, 0.0])
-    red, middle, blue = (bilinear(image, places + (moved + side * apart) * right, edge) for side in (1.0, 0.0, -1.0))
-    return np.concatenate([red[..., :1], middle[..., 1:2], blue[..., 2:3], middle[..., 3:]], axis=-1)
+    places, thin = grid(width, height), 0.25 * band
+    top = places[..., 1:] - 0.5
+    end = thin * np.ceil(top / thin)
+    covered = np.clip(end - top, 0.0, 1.0)
+    seen = [(covered, end - 0.5 * thin), (1.0 - covered, end + 0.5 * thin)] if thin > 1.0 else [(1.0, top + 0.5)]
+    result = np.zeros_like(image)
+    for weight, at in seen:
+        moved, apart = np.zeros((height, width, 1)), np.zeros((height, width, 1))
+        for level, part in enumerate((band, thin)):
+            row = np.floor(at / part)
+            cells = np.concatenate([row, np.full_like(row, frame // hold), np.full_like(row, level)], axis=-1)
+            dice = hash3(cells, np.array([seed, 0, 0]))
+            jumps = dice[..., :1] < amount
+            moved += np.where(jumps, shift * (2.0 * dice[..., 1:2] - 1.0), 0.0)
+            apart += np.where(jumps, colors * (2.0 * dice[..., 2:] - 1.0), 0.0)
+        right = np.array([1.0, 0.0])
+        red, middle, blue = (bilinear(image, places + (moved + way * apart) * right, edge) for way in (1.0, 0.0, -1.0))
+        result += weight * np.concatenate([red[..., :1], middle[..., 1:2], blue[..., 2:3], middle[..., 3:]], axis=-1)
+    return result
 
 
 def mean_cosine(phase: Array, width: float) -> Array:
