@@ -6,7 +6,7 @@ from random import Random
 
 import numpy as np
 from halation.graph import Graph, Input, Output, Port, signature
-from halation.nodes import Kind, Node, Source, Temporal, catalogue, look_at
+from halation.nodes import Kind, Node, Pointwise, Source, Temporal, catalogue, look_at
 
 SIZE = (37, 23)
 CLASSES = [node for node in catalogue().values() if not issubclass(node, Source)]
@@ -46,7 +46,9 @@ def random_graph(seed: int, length: int = 10) -> Graph:
         graph = graph.add(name, node)
         face = signature(node)
         wires = [
-            value for value in face.values if face.pointwise and face.values[value].wireable and rng.random() < 0.15
+            value
+            for value in face.values
+            if face.pointwise and not takes_passes(node) and face.values[value].wireable and rng.random() < 0.15
         ]
         for target in [*face.inputs, *wires]:
             fitting = [
@@ -66,6 +68,11 @@ def random_graph(seed: int, length: int = 10) -> Graph:
         name = f"o{number}"
         graph = graph.add_output(name, Output(kind, socket.channels)).connect(port, Port("outputs", name))
     return graph
+
+
+def takes_passes(node: Node) -> bool:
+    """True if it is not drawn pixel by pixel at these values, so that none of them can be a picture."""
+    return isinstance(node, Pointwise) and node.takes_passes()
 
 
 def looks_around(node: Node) -> bool:

@@ -66,7 +66,8 @@ def combo(
     """Draw a list of texts, each as `show` writes it; returns what was chosen in this frame, or ""."""
     imgui.set_next_item_width(width)
     chosen = ""
-    opened = imgui.begin_combo(f"##{name}", show(current), int(imgui.ComboFlags_.no_arrow_button))
+    flags = int(imgui.ComboFlags_.no_arrow_button) | int(imgui.ComboFlags_.height_large)
+    opened = imgui.begin_combo(f"##{name}", show(current), flags)
     if opened:
         for choice in choices:
             if imgui.selectable(make_label(show(choice), choice), choice == current)[0]:
