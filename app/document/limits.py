@@ -67,8 +67,8 @@ frames of a film of two hours."""
 LEAST_KEYS = 20
 """Keys that a value with keys counts as at least: to find, check and calculate it takes as long (measured)."""
 
-MAX_NUMBERS = 600_000
-"""Numbers and lists of numbers in values and keys together: 200,000 points of outlines, which have three each."""
+MAX_NUMBERS = 1_200_000
+"""Numbers and lists of numbers in values and keys together: 170,000 points with tangents, or 400,000 without."""
 
 MAX_UNITS = 10_000
 """Nodes with units of their own, of which equal nodes count once: each takes as long to read as ten others."""

@@ -21,8 +21,8 @@ class Pixelate(Filter):
     sampling: Annotated[
         Literal["average", "center"],
         Doc(
-            "Average keeps the light. Center shows the mean of the middle of each square, an eighth as wide and high but "
-            "at least a pixel, which looks like a small picture that was enlarged, with aliasing."
+            "Average keeps the light. Center shows the mean of the middle of each square, an eighth as wide and high "
+            "but at least a pixel, which looks like a small picture that was enlarged, with aliasing."
         ),
     ] = "average"
 

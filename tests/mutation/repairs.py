@@ -104,8 +104,8 @@ REPAIRS = (
     Repair(
         "deep brackets are refused",
         "app/document/syntax.py",
-        "    if max(accumulate(steps), default=0) > MAX_NESTING:",
-        "    if max(accumulate(steps), default=0) < 0:",
+        "    if max(accumulate(map(_STEPS.__getitem__, steps)), default=0) > MAX_NESTING:",
+        "    if max(accumulate(map(_STEPS.__getitem__, steps)), default=0) < 0:",
         "tests/lint/test_sizes.py::test_what_is_too_large_is_refused",
     ),
     Repair(

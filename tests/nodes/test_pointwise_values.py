@@ -17,9 +17,10 @@ NODES = [node for node in catalogue().values() if issubclass(node, Pointwise)]
 
 
 def choose(node: type[Node]) -> list[dict[str, str]]:
-    """The default choices, then every other choice of every value, one at a time."""
+    """The default choices, then every other one, one at a time, with which it is drawn pixel by pixel."""
     choices = [(value.name, choice) for value in node.values.values() for choice in value.choices]
-    return [{}, *({name: choice} for name, choice in choices if choice != node.values[name].default)]
+    changed = [{name: choice} for name, choice in choices if choice != node.values[name].default]
+    return [{}, *(values for values in changed if not node(**values).takes_passes())]
 
 
 def list_cases() -> Iterator[ParameterSet]:
