@@ -39,6 +39,17 @@ LOOK: Mapping[str, Any] = {
 }
 """Parts of a graph for the fixture `graphs`; `size` changes passes."""
 
+CHOICES: Mapping[str, Any] = {
+    "nodes": {"mix": {"type": "merge"}, "paint": {"type": "constant"}},
+    "links": {"mix.a": "paint.out", "mix.b": "light.out", "outputs.image": "mix.out"},
+    "controls": {
+        "stops": {"target": "light.stops"},
+        "kind": {"target": "mix.mode"},
+        "color": {"target": "paint.color"},
+    },
+}
+"""The same for controls of other types: a number, a choice and a color."""
+
 
 def write_look(folder: Path) -> Path:
     """The graph of the look, without a file for its picture."""

@@ -19,13 +19,13 @@ MAX_CODE = 500_000
 """Letters of all code of a graph together: to read them takes a second."""
 
 LEAST_CODE = 500
-"""Letters that the shortest code counts as: to make a node type of it takes as long as to read so many (measured)."""
+"""Letters that the shortest code counts as: to make a node type of it takes as long as to read so many (estimate)."""
 
 MAX_NODES = 100_000
 """Nodes after every group is expanded: a few files that hold each other twice would otherwise make billions."""
 
 GROUP_COST = 60
-"""Nodes that a group counts as, besides those in it: to read and check its body takes as long (measured). So there are
+"""Nodes that a group counts as, besides those in it: to read and check its body takes as long (estimate). So there are
 1,666 groups at most; graphs in use have dozens."""
 
 MAX_ODD = 10_000
@@ -40,13 +40,13 @@ MAX_LAYOUT = 500_000
 
 MAX_TEXTS = 4000
 """Texts of nodes, names of fonts and layers among them, of which equal nodes count once. Twice the titles of a film: to
-set 1,000 takes 0.2 s (measured)."""
+set 1,000 takes 0.2 s (estimate)."""
 
 MAX_LETTERS = 200_000
 """Letters of all texts of nodes together: those of a small book."""
 
 MAX_FILES = 4000
-"""Names of files in nodes and inputs, of which equal nodes count once. To look for 1,000 takes 0.2 s (measured)."""
+"""Names of files in nodes and inputs, of which equal nodes count once. To look for 1,000 takes 0.2 s (estimate)."""
 
 MAX_ITEMS = 20_000
 """Named items (lights, outlines, strokes) of all nodes together: 78 nodes with as many outlines as one may have."""
@@ -55,7 +55,7 @@ MAX_ENDS = 10_000
 """Inputs, outputs and controls of one graph or group. Chosen by judgement: far more than a node can show."""
 
 MAX_ALL_ENDS = 2 * MAX_ENDS
-"""Those of a graph and all groups in its file together. Each takes longer than a node (measured)."""
+"""Those of a graph and all groups in its file together. Each takes longer than a node (estimate)."""
 
 MAX_LINKS = 3 * MAX_NODES
 """Links of a graph and all groups in its file. Three for each node: most nodes have one or two inputs."""
@@ -65,7 +65,7 @@ MAX_KEYS = 200_000
 frames of a film of two hours."""
 
 LEAST_KEYS = 20
-"""Keys that a value with keys counts as at least: to find, check and calculate it takes as long (measured)."""
+"""Keys that a value with keys counts as at least: to find, check and calculate it takes as long (estimate)."""
 
 MAX_NUMBERS = 1_200_000
 """Numbers and lists of numbers in values and keys together: 170,000 points with tangents, or 400,000 without."""
@@ -79,7 +79,7 @@ read, check and calculate so many takes a second. Of one that was there before o
 that it reads: it is not read again."""
 
 LEAST_WORDS = 5
-"""Words that the shortest expression counts as: to look at it takes as long as to read so many (measured)."""
+"""Words that the shortest expression counts as: to look at it takes as long as to read so many (estimate)."""
 
 MAX_FORMULA = 1000
 """Letters of an expression that is read at all: `expressions.tokens.MAX_LENGTH`, which is loaded with the first one."""

@@ -15,7 +15,7 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from game_looks import export, export_look, list_knobs, open_reader, refuse_unfit_graphs
+from game_looks import CHOICES, export, export_look, list_knobs, open_reader, refuse_unfit_graphs
 
 needs_compiler = pytest.mark.skipif(not shutil.which("glslangValidator"), reason="glslangValidator is not installed")
 needs_grammar = pytest.mark.skipif(importlib.util.find_spec("gdtoolkit") is None, reason="gdtoolkit is not installed")
@@ -72,15 +72,7 @@ def test_the_scripts_are_gdscript(look: Path) -> None:
 
 
 def test_controls_are_what_the_inspector_shows(cli, graphs, tmp_path: Path) -> None:
-    graph = graphs(
-        nodes={"mix": {"type": "merge"}, "paint": {"type": "constant"}},
-        links={"mix.a": "paint.out", "mix.b": "light.out", "outputs.image": "mix.out"},
-        controls={
-            "stops": {"target": "light.stops"},
-            "kind": {"target": "mix.mode"},
-            "color": {"target": "paint.color"},
-        },
-    )
+    graph = graphs(**CHOICES)
     text = (export(cli, graph, tmp_path / "look", "godot") / "halation_graph.gd").read_text("utf-8")
     assert "@export_range(-10.0, 10.0, 0.02) var look_stops: float = 1.0" in text
     assert re.search(r'^@export_enum\("\w+", .*\) var look_kind: int = \d+$', text, re.MULTILINE)

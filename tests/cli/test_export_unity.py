@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from game_looks import export, export_look, list_knobs, open_reader, refuse_unfit_graphs
+from game_looks import CHOICES, export, export_look, list_knobs, open_reader, refuse_unfit_graphs
 from halation.presets import paths
 
 STAND_INS = Path(__file__).parents[1] / "data/unity/stand_ins.cs"
@@ -135,15 +135,7 @@ def compile_scripts(folders: list[Path], work: Path, *more: str) -> None:
 
 
 def test_controls_are_what_the_inspector_shows(cli, graphs, tmp_path: Path) -> None:
-    graph = graphs(
-        nodes={"mix": {"type": "merge"}, "paint": {"type": "constant"}},
-        links={"mix.a": "paint.out", "mix.b": "light.out", "outputs.image": "mix.out"},
-        controls={
-            "stops": {"target": "light.stops"},
-            "kind": {"target": "mix.mode"},
-            "color": {"target": "paint.color"},
-        },
-    )
+    graph = graphs(**CHOICES)
     text = (export(cli, graph, tmp_path / "look", "unity") / "GraphFeature.cs").read_text("utf-8")
     assert "[Range(-10.0f, 10.0f)] public float @stops = 1.0f;" in text
     assert re.search(r"public KindChoice @kind = \(KindChoice\)\d+;", text) and '[InspectorName("over")]' in text
