@@ -86,9 +86,10 @@ def _find_places(text: str, prefixes: frozenset[str], missing: set[str]) -> dict
     """
     begin = len(text) - len(text.lstrip())
     places = {"": (begin, begin)}
+    containers = {_shorten(prefix) for prefix in prefixes if prefix}
     above: list[tuple[str, bool, int]] = []
     path, is_list, count = "", False, 0
-    part, at = "", 0 if len(prefixes) > 1 else len(text)
+    part, at = "", 0 if containers else len(text)
     while token := (_ENTRY if is_list else _KEY).match(text, at):
         word, bracket, at = token[1], token[2], token.end()
         if word or (is_list and bracket in ("{", "[")):
@@ -104,7 +105,7 @@ def _find_places(text: str, prefixes: frozenset[str], missing: set[str]) -> dict
             if not above:
                 break
             path, is_list, count = above.pop()
-        elif bracket and part not in prefixes:
+        elif bracket and part not in containers:
             at = _skip(text, at)
         elif bracket:
             above.append((path, is_list, count))

@@ -45,11 +45,12 @@ def coerce_scalar(value: Value, setting: object) -> Scalar | None:
 
 def coerce_numbers(setting: object, length: int) -> tuple[float, ...] | None:
     """A list or tuple of `length` numbers as floats, else None."""
-    if not isinstance(setting, list | tuple):
+    if not isinstance(setting, list | tuple) or len(parts := cast("tuple[Any, ...]", setting)) != length:
         return None
-    converted = [_coerce_number(part) for part in cast("tuple[Any, ...]", setting)]
-    floats = tuple(part for part in converted if part is not None)
-    return floats if len(floats) == len(converted) == length else None
+    if set(map(type, parts)) == {float}:  # one by one, those of a long outline take a second
+        return tuple(parts)
+    floats = tuple(number for part in parts if (number := _coerce_number(part)) is not None)
+    return floats if len(floats) == length else None
 
 
 def _coerce_points(setting: object, width: int, least: int) -> tuple[float, ...] | None:
@@ -99,8 +100,11 @@ def scalar_fault(value: Value, setting: object) -> str | None:
         return f"{setting!r} does not fit: it takes {describe_type(value)}"
     if isinstance(plain, str):
         return _text_fault(value, plain)
-    if isinstance(plain, tuple) and len(plain) > _FEW and value.type != "curve" and _all_fit(value, plain):
-        return _order_fault(value, plain)
+    if isinstance(plain, tuple) and len(plain) > _FEW:
+        if fault := _count_fault(value, plain):
+            return fault
+        if value.type != "curve" and _all_fit(value, plain):
+            return _order_fault(value, plain)
     for index, part in enumerate(plain if isinstance(plain, tuple) else (plain,)):
         if isinstance(part, float) and not math.isfinite(part):
             return f"{part} is not a finite number"
@@ -135,15 +139,19 @@ def sequence_fault(path: str) -> str | None:
     return None
 
 
+def _count_fault(value: Value, plain: tuple[float, ...]) -> str | None:
+    """Why there are too many points, or None."""
+    if value.type not in (*ROWS, "curve", "ramp"):
+        return None
+    count, most = len(plain) // value.length, ROWS[value.type].most if value.type in ROWS else MAX_POINTS
+    return f"{count} points are too many: it takes at most {most}" if count > most else None
+
+
 def _order_fault(value: Value, plain: tuple[float, ...]) -> str | None:
     """Why the points of a curve or ramp are not in order from 0 to 1, else None."""
-    if value.type in ROWS and len(plain) > ROWS[value.type].most * value.length:
-        return f"{len(plain) // value.length} points are too many: it takes at most {ROWS[value.type].most}"
     if value.type not in ("curve", "ramp"):
         return None
     places = plain[:: value.length]
-    if len(places) > MAX_POINTS:
-        return f"{len(places)} points are too many: it takes at most {MAX_POINTS}"
     name = "x" if value.type == "curve" else "t"
     for place in places:
         if not 0.0 <= place <= 1.0:
