@@ -15,8 +15,9 @@ class LocalToneMap(Filter):
     """Compress scene light locally, as dodging and burning do for a print, so that lights and shadows keep detail.
 
     Every pixel is compared with the largest area around it that is uniform in brightness (Reinhard et al. 2002, with
-    the paper's eight scales), `Ld = L (1 + L / white^2) / (1 + V)`. The result is display-linear light, 0..1: encode it
-    as plain sRGB (view `none`), not by another view transform. Works on the color without its alpha.
+    the paper's eight scales, or alone if it differs from all of them), `Ld = L (1 + L / white^2) / (1 + V)`. The result
+    is display-linear light, 0..1: encode it as plain sRGB (view `none`), not by another view transform. Works on the
+    color without its alpha.
     """
 
     aliases = (
@@ -111,7 +112,16 @@ class LocalToneMap(Filter):
         )
         light = draw.point("local_tone_map_light", self.image, result=Vector(width=2), scene=scene)
         center = draw.blur(light, _SIGMA * self.size)
-        area = draw.point("local_tone_map_start", result=Vector(width=2), center=center)
+        area = draw.point(
+            "local_tone_map_start",
+            result=Vector(width=2),
+            light=light,
+            center=center,
+            scene=scene,
+            scale=1 / _RATIO,
+            sharpness=self.sharpness,
+            threshold=self.threshold,
+        )
         for index in range(_SCALES):
             scale = _RATIO**index
             surround = draw.blur(light, _SIGMA * self.size * scale * _RATIO)

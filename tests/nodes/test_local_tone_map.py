@@ -160,3 +160,15 @@ def test_tiny_and_black_pictures(run, size):
     gray = black.copy()
     gray[..., :3] = 0.4
     assert run(LocalToneMap(), {"image": gray})[..., :3] == pytest.approx(1.0, abs=3e-5)  # all of it is the maximum
+
+
+def test_a_lamp_has_no_dark_rim(run):
+    """A wall beside a lamp, by areas larger than a pixel: no darker than by an area that is even to the threshold."""
+    y, x = np.mgrid[:64, :64]
+    lamp = np.clip(10.5 - np.hypot(x - 31.5, y - 31.5), 0.0, 1.0)  # the coverage of each pixel
+    light = 0.5 + 20.0 * lamp
+    image = np.stack([light, light, light, np.ones_like(light)], -1).astype(np.float32)
+    average = np.full((1, 1), 0.5, np.float32)
+    shown = run(LocalToneMap(size=2.0, sharpness=2.0, key=0.3), {"image": image, "average": average})[..., 0]
+    wall, uneven = 0.3, 0.05 * (2.0**2 * 0.3 * 1.6**2 + 0.3)  # the threshold times the paper's denominator
+    assert shown.min() > (1 + wall) / (1 + wall + uneven) * shown[0, 0]
