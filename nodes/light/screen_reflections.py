@@ -96,7 +96,8 @@ class ScreenReflections(Filter):
             unit="scene",
             minimum=0.0,
             maximum=1e8,
-            doc="The assumed thickness of objects: rays that are farther behind them pass.",
+            doc="The largest assumed thickness of objects: rays that are farther behind them pass. Thin ones count as "
+            "thick as they are wide.",
         ),
     ] = 0.3
     sky: Annotated[bool, Doc("Reflect the background, as if it were infinitely far.")] = True
@@ -128,7 +129,7 @@ class ScreenReflections(Filter):
         """
         camera = draw.camera(self.camera)
         rows, rays = (camera.rows, camera.inverse) if camera else ((0.0,) * 12, (0.0,) * 12)
-        all_surfaces = surfaces(draw, self.depth, "screen_reflections")
+        all_surfaces = surfaces(draw, self.depth, "screen_reflections", solid=rays, thickness=self.thickness)
         normal = draw(
             "screen_reflections_normal",
             self.normal,
@@ -184,7 +185,6 @@ class ScreenReflections(Filter):
         search: dict[str, Any] = {
             "rows": rows,
             "rays": rays,
-            "thickness": self.thickness,
             "longest": self.distance,
             "fade": self.fade,
             "border": self.border,

@@ -29,6 +29,7 @@ struct March {
     float gap;         // the distance of the ray behind the visible surface
     bool behind;       // true if the ray is behind the whole object at this pixel
     bool endless;      // true if it is infinitely far away at `last`
+    float fade;        // the part of a solid object's depth, from its back, over which its confidence fades
     float sure;        // confidence: 1 if it met a visible surface, less the deeper it entered an object from the side
     vec2 grazed;       // confidence and `at` where it most likely met an object that may be thinner than that
 };
@@ -72,6 +73,7 @@ March march_start(const vec4 rows[3], vec2 uv, float depth, vec3 way, float reac
     ray.level = 0;
     ray.gap = 0.0;
     ray.behind = false;
+    ray.fade = 0.0;
     ray.sure = 0.0;
     ray.grazed = vec2(0.0);
     return ray;
@@ -131,8 +133,10 @@ bool march_step(inout March ray, ivec2 cell, vec4 seen, float thickness) {
             // changed suddenly: by more than the surface and the ray can change within a pixel.
             float gap = march_gap(near_now, now), step = abs(ray.gain) * ray.nudge / MARCH_NUDGE;
             float crack = (abs(seen.y) + abs(seen.z)) / (seen.x * seen.x) + step / (near_now * near_now);
-            bool inside = min(gap, march_gap(near_next, then)) < seen.w;
-            ray.sure = inside ? 1.0 : clamp(2.0 - 2.0 * gap / max(thickness, 1e-9), 0.0, 1.0);
+            float front = seen.w - min(gap, march_gap(near_next, then));
+            bool inside = front > 0.0;
+            float whole = clamp(front / max(ray.fade * seen.w, 1e-9), 0.0, 1.0);
+            ray.sure = max(whole, clamp(2.0 - 2.0 * gap / max(thickness, 1e-9), 0.0, 1.0));
             // If each of two pixels lies behind the plane of the other, there is a convex edge. It does not hide a ray
             // that leaves it: the planes only extend too far.
             vec2 away = middle - ray.middle;
@@ -142,12 +146,12 @@ bool march_step(inout March ray, ivec2 cell, vec4 seen, float thickness) {
                 // Move inside the object, unless it is just a crease: at its border, interpolated colors would mix two
                 // surfaces.
                 if (gap > crack) ray.at = min(ray.at + MARCH_INSIDE / MARCH_NUDGE * ray.nudge, ray.last);
-                if (seen.w == 0.0 || inside || ray.sure == 1.0) return true;
+                if (seen.w == 0.0 || ray.sure == 1.0) return true;
                 if (ray.sure > ray.grazed.x) ray.grazed = vec2(ray.sure, ray.at);
             }
         }
         ray.gap = after < least ? march_gap(near_next, then) : 0.0;
-        ray.behind = ray.gap > seen.w;
+        ray.behind = ray.gap > (1.0 - ray.fade) * seen.w;
     }
     if (ray.level == 0) ray.plane = seen.xyz, ray.middle = low + 0.5;
     ray.at = next;

@@ -6,13 +6,25 @@
 #include "lib/occlusion.glsl"
 #include "lib/pi.glsl"
 #include "lib/prefiltered_near.glsl"
+#include "lib/solid.glsl"
 
 const float SCREEN_REFLECTIONS_SHARP = 1e-3;  // with a smaller alpha, GGX counts as a mirror
 // The side of the square whose mean a ray takes, as a part of what it stands for. With more, light leaks past objects:
 // of 0, 0.1 and 0.25 this had the least error in a room with small lamps.
 const float SCREEN_REFLECTIONS_FOOTPRINT = 0.1;
 
+// The part of an object's thickness, from its back, over which rays fade out that pass behind its front.
+const float SCREEN_REFLECTIONS_FADE = 0.5;
+
 vec4 screen_reflections_planes() { return march_planes(); }
+vec4 screen_reflections_neighbors(const vec4 rays[3]) { return solid_neighbors(rays); }
+vec4 screen_reflections_runs(int reach) { return solid_runs(reach); }
+// What lies in front of a surface can only be guessed to its other side: rays are sure to meet an object as deep as it is
+// wide, and do not at twice that, nor beyond the thickness that the user gave.
+vec4 screen_reflections_solid(const vec4 rays[3], float thickness) {
+    vec4 plane = solid_planes(rays);
+    return vec4(plane.xyz, min(plane.w / (1.0 - SCREEN_REFLECTIONS_FADE), thickness));
+}
 vec4 screen_reflections_bounds() { return march_bounds(); }
 vec4 screen_reflections_surfaces() { return march_surfaces(); }
 
@@ -32,14 +44,15 @@ float screen_reflections_roughness(vec2 material, bool linked, float roughness) 
 
 // The result of a ray: the position that it meets in the picture, the distance in the world, and the confidence.
 vec4 screen_reflections_ray(
-    const vec4 rows[3], vec3 way, vec3 plane, float thickness, float longest, float fade, float border, bool sky,
+    const vec4 rows[3], vec3 way, vec3 plane, float longest, float fade, float border, bool sky,
     int steps
 ) {
     vec2 size = vec2(extent);
     March ray = march_start(
         rows, camera_uv(pixel, extent), 1.0 / surfaces_at(pixel).x, march_out(way, plane), longest, sky, size
     );
-    if (!march(ray, extent, thickness, steps)) return vec4(0.0);
+    ray.fade = SCREEN_REFLECTIONS_FADE;
+    if (!march(ray, extent, 0.0, steps)) return vec4(0.0);
     vec2 place = march_place(ray), inside = min(place, size - place);
     float sure = ray.sure * smoothstep(0.0, max(border, 1e-6), min(inside.x, inside.y)), far = longest;
     if (!ray.endless) {
@@ -61,14 +74,14 @@ void screen_reflections_level(const vec4 rays[3], int stride, float contrast, ou
 
 // The light of the surface that a mirrored ray meets, times the confidence.
 vec4 screen_reflections_sharp(
-    const vec4 rows[3], const vec4 rays[3], float thickness, float longest, float fade, float border, bool sky,
+    const vec4 rows[3], const vec4 rays[3], float longest, float fade, float border, bool sky,
     int steps
 ) {
     vec3 normal = normal_at(pixel);
     if (normal == vec3(0.0)) return vec4(0.0);
     vec3 way = reflect(normalize(camera_ray(rays, camera_uv(pixel, extent))), normal);
     vec3 plane = march_normal(rows, pixel, extent);
-    vec4 met = screen_reflections_ray(rows, way, plane, thickness, longest, fade, border, sky, steps);
+    vec4 met = screen_reflections_ray(rows, way, plane, longest, fade, border, sky, steps);
     return met.w > 0.0 ? met.w * finite(image_near(met.xy)) : vec4(0.0);
 }
 
@@ -101,7 +114,7 @@ vec4 screen_reflections_way(vec3 view, float alpha, vec2 random, int count) {
 // The light from many random directions, with the variance of its mean and the width in pixels over which it blurs a
 // point: the reflected point appears as far behind the surface as it is in front.
 void screen_reflections_scattered(
-    const vec4 rows[3], const vec4 rays[3], float thickness, float longest, float fade, float border, bool sky,
+    const vec4 rows[3], const vec4 rays[3], float longest, float fade, float border, bool sky,
     int steps, int count, out vec4 light, out vec3 spread
 ) {
     vec3 normal = normal_at(pixel);
@@ -123,7 +136,7 @@ void screen_reflections_scattered(
         if (way.z <= 0.0) continue;
         float weight = screen_reflections_open(way.z, alpha);
         vec4 met = screen_reflections_ray(
-            rows, frame * way.xyz, plane, thickness, longest, fade, border, sky, steps
+            rows, frame * way.xyz, plane, longest, fade, border, sky, steps
         );
         vec4 reflected = screen_reflections_met(rays, met, way.w);
         float bright = luminance(reflected.rgb);

@@ -255,18 +255,56 @@ def test_nothing_mirrors_nothing(run):
             )
 
 
+def far_rod(eye: Array, way: Array, radius: float) -> Array:
+    """How far along rays they meet a rod over the floor, along x; infinite where they miss it."""
+    out, ahead = eye[..., 1:] - np.array([0.0, 0.2]), way[..., 1:]
+    square, half = (ahead**2).sum(-1), (out * ahead).sum(-1)
+    under = half**2 - square * ((out**2).sum(-1) - radius**2)
+    far = (-half - np.sqrt(np.maximum(under, 0.0))) / square
+    return np.where((under > 0) & (far > 0), far, np.inf)
+
+
+@pytest.mark.parametrize("radius", [0.04, 0.1])
+def test_a_rod_mirrors_as_thick_as_it_is(run, radius):
+    """Rays cast at the rod by numpy: the floor mirrors a rod, not a wall as deep as the largest thickness."""
+    size = (320, 180)
+    camera = look_at((0.0, -4.0, 1.5), (0.0, 3.0, 0.0), (1.2, 1.2 * 16 / 9))
+    depth, normal, place, view = taken(camera, [FLOOR, WALL], size)
+    way, eye = rays(camera, *size), np.array(camera.eye)
+    near = far_rod(np.broadcast_to(eye, way.shape), way, radius)
+    rod = near < depth
+    depth = np.where(rod, near, depth)
+    image = ramp(size)
+    image[..., 2] = rod
+    floor = (normal[..., 2] > 0.5) & ~rod
+    normal[rod] = 0.0
+    up = view * np.array([1.0, 1.0, -1.0])
+    expected = np.isfinite(far_rod(place, up, radius))[floor]
+    shown = mirrored(run, camera, depth, image=image, thickness=2.0)[floor][:, 2] > 0.5
+    assert expected.sum() > 900
+    assert (shown != expected).sum() <= 5 * size[0]  # rows: its two edges; a wall half a unit deep had 19 and 29
+
+
 def test_rays_pass_behind_what_is_thin(run):
-    """A board near the camera: rays from the floor far behind it meet it only if it is as thick as that."""
+    """A board near the camera: rays from the floor far behind it pass, unless it is as thick as that: it is not, and
+    what reaches the border may be.
+    """
     camera = look_at((0.0, -4.0, 1.5), (0.0, 3.0, 0.9), (1.2, 1.2 * 16 / 9))
     depth, normal, *_ = taken(camera, [FLOOR, WALL])
-    board = np.zeros(depth.shape, bool)
-    board[50:58, 70:90] = True
-    depth, normal = np.where(board, 2.0, depth), np.where(board[..., None], -np.array(camera.forward), normal)
-    image = ramp()
-    image[..., 2] = board
-    floor = normal[..., 2] > 0.5
-    seen = [mirrored(run, camera, depth, normal, image=image, thickness=far)[floor][:, 2] > 0.5 for far in (0.01, 1e4)]
-    assert seen[0].sum() == 0 and seen[1].sum() > 100
+    for across, down, least in ((np.s_[70:90], np.s_[50:58], 0), (np.s_[:], np.s_[:50], 100)):
+        board = np.zeros(depth.shape, bool)
+        board[down, across] = True
+        far = np.where(board, 2.0, depth)
+        facing = np.where(board[..., None], -np.array(camera.forward), normal)
+        image = ramp()
+        image[..., 2] = board
+        floor = facing[..., 2] > 0.5
+        seen = [
+            (mirrored(run, camera, far, facing, image=image, thickness=most)[floor][:, 2] > 0.5).sum()
+            for most in (0.01, 1e4)
+        ]
+        assert seen[0] == 0
+        assert seen[1] == 0 if least == 0 else seen[1] > least
 
 
 LAMP, LUMINANCE = (0.3, 1.6), 60.0
