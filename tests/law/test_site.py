@@ -8,6 +8,7 @@ from __future__ import annotations
 import logging
 import re
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -61,6 +62,13 @@ def test_a_page_of_a_node_says_what_the_declaration_says(site: Path) -> None:
     assert re.search(r"\d+ passes, and \d+ MiB of textures at 1920 x 1080. It takes 80 ms with a device.", page)
     pictures = re.findall(r'src="../pictures/nodes/(\w+).jpg"', page)
     assert pictures == ["sample", "bloom", "photograph", "bloom_photograph", "bloom_strip"]
+
+
+def test_the_extra_for_the_manual_draws_every_node() -> None:
+    """Its pages render each node, also the one that denoises, where nothing else is installed."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    extras = project["optional-dependencies"]
+    assert {*extras["denoise"]} < {*extras["docs"]}
 
 
 def test_bars_in_tables_have_no_backslash(site: Path) -> None:
