@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import importlib
 import os
+import re
 import sys
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
@@ -35,6 +36,8 @@ if TYPE_CHECKING:
 
 GROUP = "halation.nodes"
 """The group of entry points that makes a package a plug-in."""
+PLUGINS_VARIABLE = "HALATION_PLUGINS"
+"""The packages that are loaded as plug-ins, separated by commas; `none` loads none. Without it all are loaded."""
 
 
 class Plugin(NamedTuple):
@@ -63,13 +66,31 @@ class Plugin(NamedTuple):
 
 @cache
 def plugins() -> tuple[Plugin, ...]:
-    """Every installed plug-in by name, refused ones included."""
-    if not any(map(_may_hold_plugins, sys.path)) and not any(map(_finds_packages, sys.meta_path)):
+    """Every installed plug-in by name, refused ones included; of those that HALATION_PLUGINS allows, if it is set."""
+    allowed = _list_allowed()
+    if allowed == {"none"} or (
+        not any(map(_may_hold_plugins, sys.path)) and not any(map(_finds_packages, sys.meta_path))
+    ):
         return ()
     from importlib.metadata import entry_points  # to import and ask it takes 20 ms
 
-    loaded = [_load(point) for point in entry_points(group=GROUP)]
+    points = entry_points(group=GROUP)
+    loaded = [_load(point) for point in points if not allowed or _normalize(_name_package(point)) in allowed]
     return tuple(_refuse_shared_ids(sorted(loaded, key=lambda plugin: plugin.package)))
+
+
+def _list_allowed() -> set[str]:
+    """The packages that the user allows; empty if all are allowed."""
+    return {_normalize(name) for name in os.environ.get(PLUGINS_VARIABLE, "").split(",") if name.strip()}
+
+
+def _normalize(name: str) -> str:
+    """The name of a package for comparison, as PEP 503 defines it."""
+    return re.sub(r"[-_.]+", "-", name.strip()).lower()
+
+
+def _name_package(point: EntryPoint) -> str:
+    return point.dist.name if point.dist else point.name
 
 
 def _may_hold_plugins(folder: str) -> bool:
@@ -168,10 +189,7 @@ def find_fault_place(fault: BaseException, node: type[Node]) -> str:
 
 def _load(point: EntryPoint) -> Plugin:
     """The plug-in of an entry point. Whatever goes wrong in its code becomes its fault."""
-    distribution = point.dist
-    plugin = Plugin(
-        distribution.name if distribution else point.name, distribution.version if distribution else "0", point.value
-    )
+    plugin = Plugin(_name_package(point), point.dist.version if point.dist else "0", point.value)
     if not point.value.isidentifier():
         return plugin._replace(fault=f"its entry point names '{point.value}', which is no top-level package")
     try:

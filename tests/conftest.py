@@ -18,6 +18,7 @@ from hypothesis import HealthCheck, settings
 pytest_plugins = ["selection", "children", "costs", "failures", "recycling", "skips", "time_limits"]
 
 os.environ["LANGUAGE"] = "en"  # tests name what they see in English, whatever the language of the machine
+os.environ["HALATION_PLUGINS"] = "none"  # they are of Halation alone, whatever is installed beside it
 
 # A busy machine is no fault of what is tested: examples may take as long as they take.
 UNHURRIED = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])

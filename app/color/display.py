@@ -8,7 +8,6 @@ does the same for a video display (ITU-R BT.1886: a power of 2.4), as BT.709 vid
 
 from __future__ import annotations
 
-import difflib
 from functools import lru_cache
 from types import MappingProxyType
 from typing import Any, Literal
@@ -16,6 +15,7 @@ from typing import Any, Literal
 import numpy as np
 
 from ..errors import UsageError
+from ..resources.suggestions import find_near_names
 from .management import (
     BUILT_IN,
     ColorManager,
@@ -102,9 +102,7 @@ def _match_name(name: str, choices: tuple[str, ...], noun: str) -> str:
     if len(matches) == 1:
         return matches[0]
     folded = {key: choice for choice in choices for key in (choice.casefold(), choice.casefold().split()[0])}
-    close_names = difflib.get_close_matches(
-        word, folded, 1, 0.4
-    )  # chosen by judgement: below difflib's 0.6, as one letter counts much in a short name
+    close_names = find_near_names(word, folded)
     hint = f"did you mean '{folded[close_names[0]]}'? Choose" if close_names else "choose"
     raise UsageError(f"there is no {noun} '{name}': {hint} from {', '.join(choices)}")
 

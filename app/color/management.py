@@ -14,7 +14,6 @@ built-in one. The working space is the one that the graph names, else linear Rec
 
 from __future__ import annotations
 
-import difflib
 import os
 from collections.abc import Iterable
 from functools import cache, cached_property, lru_cache
@@ -29,6 +28,7 @@ from ..errors import GraphError, HalationError, InputError, UsageError
 from ..resources.input_files import content_hash, find_special_kind
 from ..resources.library_names import is_utf8
 from ..resources.sandbox import UNRESTRICTED, Sandbox
+from ..resources.suggestions import find_near_names
 from .config_files import find_config_fault, open_config
 
 _MOST_LISTED = 12
@@ -167,9 +167,7 @@ class ColorManager:
     def suggest_space(self, name: str) -> str:
         """The rest of a sentence about an unknown space."""
         names = {word.casefold(): word for word in (*SPACES, *self.spaces.getRoleNames(), *self.list_spaces())}
-        close_names = difflib.get_close_matches(
-            name.casefold(), names, 1, 0.5
-        )  # chosen by judgement: below difflib's 0.6, as one letter counts much in a short name
+        close_names = find_near_names(name.casefold(), names)
         start = f"did you mean '{names[close_names[0]]}'? It" if close_names else "it"
         return f": {start} must be a color space or role of {self.where}, such as {_shorten_list(self.list_spaces())}"
 
@@ -250,7 +248,7 @@ class ColorManager:
             if path.exists() and (kind := find_special_kind(path.stat().st_mode)):
                 raise self._error(f"{self._describe_source(source)}: is {kind}, not a file: name a regular file")
             folder = path.parent
-            near = difflib.get_close_matches(path.name, _list_names(folder), 1)
+            near = find_near_names(path.name, _list_names(folder))
             raise self._error(f"{self._describe_source(source)}: there is no such color config{_suggest(near)}")
         if not is_utf8(source):  # its tables lie beside it, so links must be resolved first
             raise self._error(f"{self._describe_source(source)}: no color config can have such a name: it is not UTF-8")
@@ -271,9 +269,7 @@ class ColorManager:
         except ocio_errors() as error:
             reason = f"is no color config that can be read: {describe_ocio_error(error)}"
             if source.startswith("ocio://"):
-                near = difflib.get_close_matches(
-                    source, list_builtin_configs(), 1, 0.3
-                )  # chosen by judgement: they are long, and users type parts
+                near = find_near_names(source, list_builtin_configs())
                 reason = f"there is no such built-in config{_suggest(near)}"
             raise self._error(f"{self._describe_source(source)}: {reason}") from None
 

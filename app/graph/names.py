@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Collection, Iterable, Mapping
 from typing import TypeVar
 
 from ..errors import GraphError
-from ..resources.suggestions import can_compare, may_compare
+from ..resources.suggestions import can_compare, find_near_names, may_compare
 
 INPUTS, OUTPUTS = "inputs", "outputs"
 """The node ids in links that stand for the inputs and outputs of the graph itself."""
@@ -27,7 +26,7 @@ def did_you_mean(name: str, names: Collection[str]) -> str:
     if len(name) > _MAX_LENGTH or not can_compare_all(names) or not may_compare(len(names)):
         return ""
     lowered = {item.lower(): item for item in sorted(names, reverse=True) if len(item) <= _MAX_LENGTH}
-    if near := difflib.get_close_matches(name.lower(), lowered, n=1):
+    if near := find_near_names(name.lower(), lowered):
         return f"; did you mean '{lowered[near[0]]}'?"
     if 0 < len(lowered) <= _MAX_LISTED:
         return f"; there is {', '.join(sorted(lowered.values()))}"

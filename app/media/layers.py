@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
@@ -13,6 +12,7 @@ from msgspec.structs import replace
 
 from ..errors import InputError
 from ..resources.picture import PixelRectangle
+from ..resources.suggestions import find_near_names
 
 _BEAUTY_NAMES = ("combined", "beauty", "rgba", "rgb", "c", "ci")
 """Names that renderers give the picture itself, the usual one first."""
@@ -114,9 +114,7 @@ def _match_name(info: ImageInfo, name: str) -> list[Layer]:
 def suggest_layers(layers: Sequence[Layer], name: str) -> list[str]:
     """The names of layers that are most similar to a name, at most three."""
     names = {normalize_name(layer.name): layer.name for layer in layers}
-    return [
-        names[word] for word in difflib.get_close_matches(normalize_name(name), names, 3, 0.5)
-    ]  # chosen by judgement: below difflib's 0.6, as one letter counts much in a short name
+    return [names[word] for word in find_near_names(normalize_name(name), names, 3)]
 
 
 def normalize_name(name: str) -> str:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import difflib
 import hashlib
 import os
+import re
 import stat
 from collections.abc import Collection
 from io import BufferedReader
@@ -16,7 +17,7 @@ from pathlib import Path, PurePath
 
 from ..errors import InputError
 from .sandbox import Sandbox, make_path_printable
-from .suggestions import may_compare
+from .suggestions import find_near_names, may_compare
 
 _OPEN_FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0) | getattr(os, "O_BINARY", 0)
 """Windows has only the last of them, and needs it."""
@@ -125,18 +126,34 @@ def _describe_missing(path: Path) -> str:
         if not path.parent.is_dir():
             return "there is no such file; its folder is missing too"
         names = os.listdir(path.parent) if may_compare() else ()  # noqa: PTH208 - of many files, names are enough
+        numbered = _list_numbered(path.name, names)
         guess = find_similar_name(path.name, names)
     except (OSError, ValueError):
         return "no file can have such a name: check it"
+    if numbered:
+        others = f"{numbered[0]} to {numbered[-1]}" if len(numbered) > 1 else numbered[0]
+        return f"there is no such file, only {others}"
     return f"there is no such file; did you mean '{guess}'?" if guess else "there is no such file: check the name"
+
+
+def _list_numbered(name: str, names: Collection[str]) -> list[str]:
+    """The names that differ from one in their numbers alone, such as other frames of a sequence, in order."""
+    shape = _split_numbers(name)[::2]
+    alike = (item for item in names if _split_numbers(item)[::2] == shape) if len(shape) > 1 else ()
+    return sorted(alike, key=lambda item: [int(digits) for digits in _split_numbers(item)[1::2]])
+
+
+def _split_numbers(name: str) -> list[str]:
+    """Texts and numbers of a name in turn, the texts without regard to capitals."""
+    return re.split(r"([0-9]+)", name.casefold())
 
 
 def find_similar_name(name: str, names: Collection[str]) -> str:
     """The most similar of the names of files, for a suggestion; "" if none is similar.
 
-    What stands before the first dot must be similar, in capitals or not: all names of a folder of pictures may end
-    alike, and then `nope.exr` looks like each of them. The endings must be of one kind: `shot.log` is no suggestion for
-    `shot.exr`. Of many faults only the first get suggestions (`limit_suggestions`).
+    What stands before the first dot must be near (`find_near_names`), in capitals or not: all names of a folder of
+    pictures may end alike, and then `nope.exr` looks like each of them. The endings must be of one kind: `shot.log` is
+    no suggestion for `shot.exr`. Of many faults only the first get suggestions (`limit_suggestions`).
     """
     if not may_compare(len(names)):
         return ""
@@ -146,7 +163,7 @@ def find_similar_name(name: str, names: Collection[str]) -> str:
         if not _may_stand_for(_find_ending(candidate), ending):
             continue
         names_by_stem.setdefault(_find_stem(candidate), []).append(candidate)
-    stems = difflib.get_close_matches(_find_stem(name), names_by_stem, 1)
+    stems = find_near_names(_find_stem(name), names_by_stem)
     return difflib.get_close_matches(name, names_by_stem[stems[0]], 1, 0.0)[0] if stems else ""
 
 

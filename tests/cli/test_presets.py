@@ -131,6 +131,7 @@ def test_presets_of_plug_ins(cli, empty, fresh_plugins, monkeypatch, tmp_path):
     (notes / "METADATA").write_text("Metadata-Version: 2.1\nName: acme-haze\nVersion: 1.0\n")
     (notes / "entry_points.txt").write_text("[halation.nodes]\nacme_haze = acme_haze\n")
     monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setenv("HALATION_PLUGINS", "acme-haze")
     assert cli("explain", "acme_haze.ball").code == 0
     assert "acme_haze.ball" in cli("demo", "--list").out.split()
     assert cli("explain", "ball").code == cli("explain", "other.ball").code == 3

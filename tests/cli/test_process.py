@@ -92,7 +92,7 @@ def test_a_check_reads_headers_without_arrays_and_asks_for_plug_ins_only_where_o
     notes.mkdir(parents=True)
     (notes / "METADATA").write_text("Metadata-Version: 2.1\nName: acme\nVersion: 1.0\n")
     (notes / "entry_points.txt").write_text("[halation.nodes]\nacme = acme\n")
-    asked = halation("check", ten, env={**os.environ, "PYTHONPATH": str(notes.parent)})
+    asked = halation("check", ten, env={**os.environ, "PYTHONPATH": str(notes.parent), "HALATION_PLUGINS": "acme"})
     assert "the plug-in acme 1.0 cannot be loaded" in asked.stderr
 
 

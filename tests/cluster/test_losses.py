@@ -154,6 +154,7 @@ def test_a_worker_with_another_plug_in_or_other_glsl_is_refused_with_both_versio
     graph["nodes"]["dim"] = {"type": "acme.dim"}
     graph["links"] |= {"dim.image": "blur.out", "outputs.image": "dim.out"}
     (shot / "shot.json").write_text(json.dumps(graph))
+    monkeypatch.setenv("HALATION_PLUGINS", "acme")
     monkeypatch.setenv("PYTHONPATH", str(sites[0]))
     farm = make_farm()
     farm.start_worker(PYTHONPATH=str(sites[1]))

@@ -145,7 +145,7 @@ class TestConnect:
             ("slope.normal", "gain.center", "a Vector3 does not fit a vector value.* Field or Number or Vector2"),
             ("slope.norml", "gain.center", "no output 'norml'; did you mean 'normal'"),
             ("slope.normal", "gian.center", "no node 'gian'; did you mean 'gain'"),
-            ("inputs.butty", "gain.image", "no input 'butty'; did you mean 'beauty'"),
+            ("inputs.beuty", "gain.image", "no input 'beuty'; did you mean 'beauty'"),
             ("inputs.beauty", "outputs.imgae", "no output 'imgae'; did you mean 'image'"),
             ("inputs.beauty", "gain.imag", "no input 'imag'; did you mean 'image'"),
             ("slope.normal", "flow.by", "a Vector3 does not fit a Vector2.*'separate_vector' and 'combine_vector2'"),

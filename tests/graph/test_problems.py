@@ -49,7 +49,7 @@ def test_an_unbound_input_is_none() -> None:
     [
         ("gian.out", "there is no node 'gian'; did you mean 'gain'?"),
         ("gain.uot", "node 'gain' has no output 'uot'; did you mean 'out'?"),
-        ("inputs.butty", "the graph has no input 'butty'; did you mean 'beauty'?"),
+        ("inputs.beuty", "the graph has no input 'beuty'; did you mean 'beauty'?"),
         ("slope.normal", "a Vector3 does not fit an Image: put 'separate_vector' and 'combine' between them"),
         ("slope.flow", "a Vector2 does not fit an Image: put 'separate_vector2' and 'combine' between them"),
     ],

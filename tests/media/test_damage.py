@@ -28,7 +28,7 @@ def said(path: Path) -> str:
 
 def test_missing(tmp_path: Path) -> None:
     (tmp_path / "shot.0012.exr").touch()
-    assert "there is no such file; did you mean 'shot.0012.exr'?" in said(tmp_path / "shot.0013.exr")
+    assert "there is no such file, only shot.0012.exr" in said(tmp_path / "shot.0013.exr")
     assert "its folder is missing too" in said(tmp_path / "none/shot.exr")
     for function in (read_info, fingerprint, content_hash, read_metadata):
         with pytest.raises(InputError, match="none"):

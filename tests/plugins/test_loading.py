@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import os
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -34,6 +35,12 @@ class Site:
     """A folder that Python imports from, in which packages can be installed."""
 
     folder: Path
+    monkeypatch: pytest.MonkeyPatch
+
+    def allow(self, package: str) -> None:
+        """Let this package be loaded too; what else the environment has installed is none of these tests'."""
+        allowed = os.environ["HALATION_PLUGINS"].replace("none", "")
+        self.monkeypatch.setenv("HALATION_PLUGINS", f"{allowed},{package}")
 
     def install(self, package: str, version: str, names: tuple[str, ...] = ("Dim",), module: str = "") -> Path:
         """A package with these nodes; returns the folder of its code."""
@@ -46,6 +53,7 @@ class Site:
         notes.mkdir()
         (notes / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {package}\nVersion: {version}\n")
         (notes / "entry_points.txt").write_text(f"[halation.nodes]\n{module} = {module}\n")
+        self.allow(package)
         importlib.invalidate_caches()
         forget()
         return code
@@ -62,7 +70,7 @@ def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Site]:
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
     loaded = set(sys.modules)
-    yield Site(tmp_path)
+    yield Site(tmp_path, monkeypatch)
     for name in set(sys.modules) - loaded:
         if name.startswith(("acme", "other")):
             del sys.modules[name]
@@ -330,3 +338,22 @@ def test_another_version_of_a_plugin_changes_no_file(site: Site) -> None:
     assert catalogue()["acme_tone.dim"].required_package == "acme-tone==2.2"
     assert document.dumps(graph) == text
     assert not [item for item in problems(graph) if item.rule.name == "unknown-key"]
+
+
+def test_only_the_packages_that_the_user_allows_are_loaded(site: Site, monkeypatch: pytest.MonkeyPatch) -> None:
+    site.install("acme-tone", "2.1")
+    site.install("other-tone", "1.0")
+    for allowed, packages in (
+        ("none", []),
+        ("acme-tone", ["acme-tone"]),
+        (" Acme_Tone , other.tone", ["acme-tone", "other-tone"]),
+    ):
+        monkeypatch.setenv("HALATION_PLUGINS", allowed)
+        forget()
+        assert [plugin.package for plugin in plugins()] == packages
+        assert {id.partition(".")[0] for id in catalogue() if "." in id} == {
+            package.replace("-", "_") for package in packages
+        }
+    monkeypatch.delenv("HALATION_PLUGINS")
+    forget()
+    assert {"acme-tone", "other-tone"} <= {plugin.package for plugin in plugins()}

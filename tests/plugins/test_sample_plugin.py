@@ -35,6 +35,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def python(site: Path, *words: str | Path) -> subprocess.CompletedProcess[str]:
     """Run Python in an environment in which the plug-in is installed."""
     environment = {**os.environ, "PYTHONPATH": str(site), "PYTHONDONTWRITEBYTECODE": "1"}
+    environment["HALATION_PLUGINS"] = "acme-glow"
     return subprocess.run(
         [sys.executable, *words], env=environment, cwd=site.parent, capture_output=True, text=True, timeout=300
     )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
@@ -21,6 +20,7 @@ from ...resources.machine import has_memory_limit
 from ...resources.picture import PixelRectangle
 from ...resources.render_choices import Precision
 from ...resources.sandbox import Sandbox
+from ...resources.suggestions import find_near_names
 from ..channels import is_depth
 from ..metadata import add_metadata
 from .finite import to_half
@@ -155,7 +155,7 @@ def _check_layers(
     encoding.check_names()
     choices = _COMPRESSIONS.get(format, (compression,))
     if compression not in choices:
-        close_names = difflib.get_close_matches(compression.casefold(), choices, 1, _SIMILAR)
+        close_names = find_near_names(compression.casefold(), choices)
         hint = f"did you mean '{close_names[0]}'? Choose" if close_names else "choose"
         raise UsageError(f"{path}: there is no compression '{compression}': {hint} from {', '.join(choices)}")
     if format != "openexr":
@@ -166,11 +166,6 @@ def _check_layers(
             f"{path}: one EXR holds layers of one size, but there are {sizes_text}: write them to several files"
         )
     return format
-
-
-_SIMILAR = 0.4
-"""How similar a suggested name is at least. Chosen by judgement: below difflib's 0.6, as one letter counts much in
-short names."""
 
 
 def _choose_format(path: Path) -> str:

@@ -5,7 +5,6 @@ Every encoder runs on one thread and leaves out dates and random numbers: the sa
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +13,7 @@ from types import MappingProxyType
 from halation.nodes import Size
 
 from ...errors import UsageError
+from ...resources.suggestions import find_near_names
 from .library import HOW_TO_INSTALL, load_pyav
 
 
@@ -89,9 +89,7 @@ def find_codec(path: str | Path, name: str, size: Size | None = None) -> VideoCo
         raise UsageError(f"{path}: videos are written as {', '.join(WRITABLE)}: choose one of these endings")
     chosen = name or codecs[0]
     if chosen not in codecs:
-        close_names = difflib.get_close_matches(
-            chosen.casefold(), codecs, 1, 0.5
-        )  # chosen by judgement: below difflib's 0.6, as one letter counts much in a short name
+        close_names = find_near_names(chosen.casefold(), codecs)
         homes = [ending for ending, codec_names in _CODECS_BY_ENDING.items() if chosen in codec_names]
         hint = f"did you mean '{close_names[0]}'? Choose" if close_names else "choose"
         rest = f", or write to {' or '.join(homes)}" if homes else ""
