@@ -5,12 +5,15 @@ from __future__ import annotations
 import base64
 import json
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 import OpenImageIO as oiio
 from browser import Browser
+from halation.compiler.codegen import rasterize
 from halation.media.comparison.metrics import measure_flip
 
 SIZE = "480x270"
@@ -60,8 +63,33 @@ def list_settings(controls: list[dict[str, Any]]) -> Iterator[tuple[tuple[str, .
             yield ("--set", f"{control['name']}={text}"), values
 
 
-def compare(ours: Path, theirs: np.ndarray, has_meshes: bool) -> tuple[float, float]:
-    """Codes of 255 that nearly all pixels are within, and the mean of FLIP. Edges of triangles may differ more."""
+@contextmanager
+def place_corners_like(browser: Browser) -> Iterator[None]:
+    """Let our own pictures have the corners of triangles where the device of an open page places them.
+
+    Devices round them to parts of a pixel, WebGL's SUBPIXEL_BITS: SwiftShader to sixteenths, the driver of our pictures
+    to 256ths. So along edges other pixels are covered, which says nothing about the page.
+    """
+    parts = 2 ** browser.run("halation.gl.getParameter(halation.gl.SUBPIXEL_BITS)")
+    width, height = SIZE.split("x")
+    write_exactly = rasterize.write_vertex_text
+
+    def write_rounded(library: str) -> str:
+        body, end, _ = write_exactly(library).rpartition("}")
+        return f"""{body}
+            if (gl_Position.w > 0.0) {{
+                const vec2 room = vec2({width}.0, {height}.0) * 0.5;
+                vec2 at = (gl_Position.xy / gl_Position.w + 1.0) * room;
+                gl_Position.xy = (floor(at * {parts}.0 + 0.5) / {parts}.0 / room - 1.0) * gl_Position.w;
+            }}
+        {end}"""
+
+    with patch.object(rasterize, "write_vertex_text", write_rounded):
+        yield
+
+
+def compare(ours: Path, theirs: np.ndarray) -> tuple[float, float]:
+    """Codes of 255 within which 99.9 % of all pixels are, and the mean of FLIP."""
     picture = read_picture(ours)
-    difference = float(np.percentile(np.abs(picture - theirs).max(axis=2), 99.0 if has_meshes else 99.9))
+    difference = float(np.percentile(np.abs(picture - theirs).max(axis=2), 99.9))
     return difference, measure_flip(theirs / 255.0, picture / 255.0, linear=False)

@@ -70,9 +70,9 @@ def find_control_name(knob: str) -> str:
     return knob.partition(".")[0]
 
 
-def find_knob_controls(graph: Graph, has_input: Callable[[Value], bool]) -> tuple[list[KnobControl], list[str]]:
-    """The controls for whose values a format `has_input`, and a sentence on each of the others."""
-    controls, notes = list[KnobControl](), list[str]()
+def find_knob_controls(graph: Graph, has_input: Callable[[Value], bool]) -> tuple[list[KnobControl], dict[str, str]]:
+    """The controls for whose values a format `has_input`, and what is said of the others, by their names."""
+    controls, remarks = list[KnobControl](), dict[str, str]()
     for name, control in graph.controls.items():
         item = graph.nodes.get(control.target.node)
         value = find_declaration(item, control.target.socket) if item else None
@@ -80,13 +80,18 @@ def find_knob_controls(graph: Graph, has_input: Callable[[Value], bool]) -> tupl
         if value is None or rest is None or isinstance(rest, ItemSet):
             continue
         if not has_input(value):
-            notes.append(f"control '{name}' keeps its value: the format has no input for a {value.type} like it")
+            remarks[name] = f"keeps its value: the format has no input for a {value.type} like it"
         elif control.target in graph.animation or control.target in graph.links:
-            notes.append(f"control '{name}' cannot be changed: it is animated or linked")
+            remarks[name] = "cannot be changed: it is animated or linked"
         else:
             label, doc = control.label or value.label, control.doc or value.doc
             controls.append(KnobControl(name, label, doc, value, _make_knobs(name, value, rest)))
-    return controls, notes
+    return controls, remarks
+
+
+def describe_control(name: str, remark: str) -> str:
+    """A sentence on a control."""
+    return f"control '{name}' {remark}"
 
 
 def _make_knobs(name: str, value: Value, rest: object) -> tuple[Knob, ...]:

@@ -23,7 +23,7 @@ sys.path.append(str(Path(__file__).parents[1]))
 from browser import Browser
 from halation.cli.program import run
 from halation.presets import paths
-from shown_pages import SIZE, compare, list_settings, show, take
+from shown_pages import SIZE, compare, list_settings, place_corners_like, show, take
 
 USUAL = "as it is"
 """The name of the setting that the preset has."""
@@ -45,15 +45,15 @@ def measure_preset(preset: str, folder: Path, *, all_settings: bool) -> None:
     with Browser() as browser, tempfile.TemporaryDirectory() as work:
         picture = Path(work) / "ours.png"
         show(browser, page)
-        has_meshes = browser.run("JSON.stringify(halation.package.plans).includes('\"mesh\"')")
         for options, knobs in list_settings(browser.run("halation.package.controls")):
             setting = options[-1] if options else USUAL
             if setting in done:
                 continue
-            assert run(["render", preset, "-o", str(picture), "--size", SIZE, "--dither", "none", *options]) == 0
-            codes, flip = compare(picture, take(browser, Path(work), knobs), has_meshes)
+            with place_corners_like(browser):
+                assert run(["render", preset, "-o", str(picture), "--size", SIZE, "--dither", "none", *options]) == 0
+            codes, flip = compare(picture, take(browser, Path(work), knobs))
             figure = {"preset": preset, "setting": setting, "codes": round(codes, 2), "flip": round(flip, 5)}
-            write_figure(folder, {**figure, "meshes": has_meshes, "messages": browser.messages})
+            write_figure(folder, {**figure, "messages": browser.messages})
             if not all_settings:
                 return
 

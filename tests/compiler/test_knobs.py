@@ -22,15 +22,15 @@ def find(graph: Graph):
 
 
 def test_each_component_is_a_knob_with_a_name_of_its_own(graph) -> None:
-    controls, notes = find(graph)
+    controls, remarks = find(graph)
     assert [(control.name, control.label) for control in controls] == [("gain", "Gain"), (FRAME, "")]
     assert [knob.name for control in controls for knob in control.knobs] == ["gain", "frame.0.0", "frame.0.1"]
-    assert notes == ["control 'edge' keeps its value: the format has no input for a choice like it"]
+    assert remarks == {"edge": "keeps its value: the format has no input for a choice like it"}
 
 
 def test_a_linked_value_cannot_be_changed(graph) -> None:
     graph = graph.add("light", catalogue()["luminance"]()).connect(Port("light", "out"), Port("grade", "stops"))
-    assert find(graph)[1][0] == "control 'gain' cannot be changed: it is animated or linked"
+    assert find(graph)[1]["gain"] == "cannot be changed: it is animated or linked"
 
 
 def test_a_graph_is_compiled_once_for_each_point_with_its_controls_set(graph) -> None:

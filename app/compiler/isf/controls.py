@@ -11,7 +11,7 @@ from halation.nodes import Value
 
 from ...custom_nodes.isf.inputs import encode_light
 from ...graph import Graph
-from ..knobs import Knob, KnobControl, find_knob_controls
+from ..knobs import Knob, KnobControl, describe_control, find_knob_controls
 from .affine import FittedKnob
 
 _ODD = re.compile(r"[^A-Za-z0-9]+")
@@ -41,12 +41,12 @@ def make_identifier(name: str, used_names: Iterable[str]) -> str:
 def find_controls(graph: Graph, used_names: Iterable[str]) -> tuple[list[IsfControl], list[str]]:
     """The controls that can become inputs, and a sentence on each of the others."""
     names, controls = set(used_names), list[IsfControl]()
-    turnable, notes = find_knob_controls(graph, _has_input)
+    turnable, remarks = find_knob_controls(graph, _has_input)
     for control in turnable:
         shader_name = make_identifier(control.name, names)
         names.add(shader_name)
         controls.append(_make_control(shader_name, control))
-    return controls, notes
+    return controls, [describe_control(name, remark) for name, remark in remarks.items()]
 
 
 def _has_input(value: Value) -> bool:

@@ -176,7 +176,8 @@ class Page {
             this.refreshers.forEach(refresh => refresh());
             this.isDirty = true;
         };
-        $("reset").hidden = $("controls").childElementCount === 0;
+        addHeldControls($("controls"), this.package.held);
+        $("reset").hidden = this.package.controls.length === 0;
         this.refreshers.forEach(refresh => refresh());
     }
 
@@ -385,7 +386,7 @@ async function open() {
     const content = JSON.parse(new TextDecoder().decode(await inflate(parts.content, 0)));
     const blobs = await Promise.all(parts.blobs.map(([stride, text]) => inflate(text, stride)));
     window.halation = new Page(content, blobs);
-    for (const note of [...content.notes, ...window.halation.reader.notes]) {
+    for (const note of listNotes(content, window.halation.reader)) {
         const line = document.createElement("li");
         line.textContent = note;
         $("notes").append(line);

@@ -10,7 +10,8 @@ from halation.nodes import Value
 from msgspec import Struct
 
 from ...compiler import Plan
-from ...compiler.knobs import FRAME, Knob, KnobControl, Point, find_control_name
+from ...compiler.knobs import FRAME, Knob, KnobControl, Point, describe_control, find_control_name
+from ...graph import find_declaration
 from ...version import VERSION
 from ..order import ExportOrder
 from .curves import PairSamples, Record, find_needed_places
@@ -78,10 +79,13 @@ class _Assembly:
         opening_knobs = [knob for knob in knobs if knob.name != FRAME] if len(phases) > 1 else knobs
         plans = [self._write_plans(axes, opening_knobs, {**base, FRAME: float(first)}, phases[0])]
         plans += [self._write_plans(axes, knobs, base, phase) for phase in phases[1:]]
-        document = self._write_head((first, first if FRAME in held_names else last), axes)
+        remarks = {**planner.remarks, **_describe_held(held_axes, irregular_names)}
+        document = self._write_head((first, first if FRAME in held_names else last), axes, remarks)
         document |= self._write_display(opening)
         document |= {"slots": self.parts.slots, "plans": plans}
-        notes = (*planner.notes, *_describe_held(held_axes, irregular_names), *self._describe_poor())
+        frozen = ["it shows one frame: other frames need other passes"] if FRAME in held_names else []
+        held_notes = [describe_control(name, remark) for name, remark in remarks.items()]
+        notes = (*held_notes, *frozen, *self._describe_poor())
         return Package(document, notes, tuple(self.parts.programs), tuple(self.parts.blobs))
 
     def _write_plans(self, axes: Sequence[VariantAxis], knobs: list[Knob], base: Point, phase: Phase) -> list[Record]:
@@ -149,7 +153,7 @@ class _Assembly:
         memories = {str(port): keys[memory.key] for port, memory in plan.memories.items() if memory.key in keys}
         return {"surfaces": surfaces, "passes": passes, "output": plan.outputs[OUTPUT], "memories": memories}
 
-    def _write_head(self, frames: tuple[int, int], axes: Sequence[VariantAxis]) -> Record:
+    def _write_head(self, frames: tuple[int, int], axes: Sequence[VariantAxis], remarks: Mapping[str, str]) -> Record:
         used_knobs = {curve["knob"] for record in self.parts.slots for curve in record.get("curves", ())}
         used_knobs |= {axis.knob for axis in axes}
         controls = [control for control in self.planner.controls if {knob.name for knob in control.knobs} & used_knobs]
@@ -162,9 +166,22 @@ class _Assembly:
             "frames": list(frames),
             "rate": float(self.order.graph.settings.rate),
             "controls": [_write_control(control) for control in controls],
+            "held": self._list_held({control.name for control in controls}, remarks),
             "axes": [{"knob": axis.knob, "edges": axis.edges} for axis in axes],
             "sources": self.parts.sources,
         }
+
+    def _list_held(self, moving: set[str], remarks: Mapping[str, str]) -> list[Record]:
+        """The controls of the graph that nothing here can move, each with the reason."""
+        held: list[Record] = []
+        for name, control in self.order.graph.controls.items():
+            node = self.order.graph.nodes.get(control.target.node)
+            value = find_declaration(node, control.target.socket) if node else None
+            if name not in moving and value is not None:
+                label, doc = control.label or value.label or _make_label(name), control.doc or value.doc
+                remark = remarks.get(name, "changes nothing in this picture")
+                held.append({"name": name, "label": label, "doc": doc, "remark": remark})
+        return held
 
     def _write_display(self, plan: Plan) -> Record:
         encodings = self.planner.provider
@@ -188,16 +205,11 @@ def _write_surfaces(plan: Plan, phase: Phase) -> list[Record]:
     return surfaces
 
 
-def _describe_held(axes: Sequence[VariantAxis], irregular_names: set[str]) -> list[str]:
-    """A sentence on each knob that keeps its value."""
+def _describe_held(axes: Sequence[VariantAxis], irregular_names: set[str]) -> dict[str, str]:
+    """What is said of each control that keeps its value."""
     reasons = {find_control_name(axis.knob): "it changes passes, as others do already" for axis in axes}
-    reasons |= dict.fromkeys(sorted(irregular_names), "it changes the order of a table, again and again")
-    return [
-        "it shows one frame: other frames need other passes"
-        if name == FRAME
-        else f"control '{name}' keeps its value: {reason}"
-        for name, reason in reasons.items()
-    ]
+    reasons |= dict.fromkeys(sorted(irregular_names), "it moves outlines, and sorted tables of them are baked")
+    return {name: f"keeps its value: {reason}" for name, reason in reasons.items() if name != FRAME}
 
 
 def _choose_widget(value: Value) -> str:
@@ -205,12 +217,16 @@ def _choose_widget(value: Value) -> str:
     return {"float": "slider", "int": "whole", "bool": "switch", "vector": "point"}.get(value.type, value.type)
 
 
+def _make_label(name: str) -> str:
+    return name.replace("_", " ").capitalize()
+
+
 def _write_control(control: KnobControl) -> Record:
     value = control.value
     knobs = [{"name": knob.name, "rest": knob.rest, "low": knob.low, "high": knob.high} for knob in control.knobs]
     record: Record = {
         "name": control.name,
-        "label": control.label or control.name.replace("_", " ").capitalize(),
+        "label": control.label or _make_label(control.name),
         "doc": control.doc,
         "kind": _choose_widget(value),
         "unit": value.unit or "",

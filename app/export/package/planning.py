@@ -58,7 +58,7 @@ class PointPlanner:
         """`game` is what draws over pictures alone, for which meshes are refused."""
         self.order, self.graph, self.game = order, order.graph, game
         self.provider = MediaProvider(sandbox=order.sandbox)
-        self.controls, self.notes = find_knob_controls(self.graph, _has_input)
+        self.controls, self.remarks = find_knob_controls(self.graph, _has_input)
         self._bindings = self.provider.bind(self.graph, order.inputs)
         self.first, self.last = self._find_frames()
         self.remembers = False
