@@ -59,6 +59,9 @@ def test_a_page_of_a_node_says_what_the_declaration_says(site: Path) -> None:
     assert all(f"<code>{name}</code>" in page for name, value in bloom.values.items() if not value.folded)
     assert bloom.aliases[0] in page and 'href="../presets.html#soft_bloom"' in page
     assert 'id="soft_bloom"' in (site / "presets.html").read_text(encoding="utf-8")
+    assert "<td>Nuke</td>" in page and "<td>Glow</td>" in page
+    neutral = (site / "nodes/exposure.html").read_text(encoding="utf-8")
+    assert "leaves the picture as it is" in neutral and "draws nothing" not in neutral
     assert re.search(r"\d+ passes, and \d+ MiB of textures at 1920 x 1080. It takes 80 ms with a device.", page)
     pictures = re.findall(r'src="../pictures/nodes/(\w+).jpg"', page)
     assert pictures == ["sample", "bloom", "photograph", "bloom_photograph", "bloom_strip"]
@@ -77,11 +80,12 @@ def test_bars_in_tables_have_no_backslash(site: Path) -> None:
 
 
 def test_nothing_is_loaded_from_elsewhere(site: Path) -> None:
-    for name in ("index.html", "nodes/bloom.html"):
+    for name in ("404.html", "index.html", "nodes/bloom.html"):
         text = (site / name).read_text(encoding="utf-8")
         assert not re.findall(r'(?:src|<link rel="stylesheet" href)="https?:[^"]*', text)
         (script,) = re.findall(r'src="([./]*assets/file_search.js)"', text)
-        assert (site / name).parent.joinpath(script).is_file()
+        folder = site if script.startswith("/") else (site / name).parent
+        assert (folder / script.lstrip("/")).is_file()
 
 
 def test_the_first_page_is_small(site: Path) -> None:

@@ -18,13 +18,20 @@ from node_pages import find_users, measure_times, render_pictures, write_node_pa
 from preset_pages import picture_files, write_gallery
 
 ROOT = Path(__file__).parents[2]
+FRAME_SCRIPT = "https://unpkg.com/iframe-worker/shim"
+"""The one script that Material loads from elsewhere: `file_search.js` does its work."""
+
+MENUS = {"aa": "AA"}
+"""Menus of nodes whose names are abbreviations."""
 
 
 def on_config(config: Any) -> Any:
     """Add the page of each node to the navigation, by menus."""
     menus: dict[str, list[Any]] = {}
     for node in built_in_nodes().values():
-        menus.setdefault(node.category.capitalize(), []).append({node.title: f"nodes/{node.id}.md"})
+        menus.setdefault(MENUS.get(node.category, node.category.capitalize()), []).append(
+            {node.title: f"nodes/{node.id}.md"}
+        )
     for entry in config.nav:
         if "Nodes" in entry:
             entry["Nodes"] = [{"All nodes": "nodes.md"}, *({name: pages} for name, pages in menus.items())]
@@ -80,12 +87,14 @@ def write_bars(markdown: str) -> str:
 def on_post_page(output: str, page: Any, **_: Any) -> str:
     """Replace the one script that Material loads from elsewhere by ours, so that the site needs no network."""
     own = "../" * page.url.count("/") + "assets/file_search.js"
-    return remove_invalid_attributes(output.replace("https://unpkg.com/iframe-worker/shim", own))
+    return remove_invalid_attributes(output.replace(FRAME_SCRIPT, own))
 
 
 def on_post_template(output_content: str, template_name: str, **_: Any) -> str:
-    """The page of dead links is made from a template of Material alone."""
-    return remove_invalid_attributes(output_content) if template_name.endswith(".html") else output_content
+    """The page of dead links is a template of Material alone. It names its files from the root of the site."""
+    if not template_name.endswith(".html"):
+        return output_content
+    return remove_invalid_attributes(output_content.replace(FRAME_SCRIPT, "/assets/file_search.js"))
 
 
 def remove_invalid_attributes(html: str) -> str:

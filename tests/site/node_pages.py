@@ -21,6 +21,7 @@ from halation.presets import paths, sample
 from halation.renderer import Renderer, RenderRequest, open_device
 from halation.renderer.bench import measure_graph
 from halation.resources.sandbox import UNRESTRICTED
+from menu_words import PROGRAMS
 
 PHOTOGRAPH = Path(__file__).with_name("photograph.jpg")
 """A cup of coffee by Rachel Michetti, who has waived all rights (CC0), made smaller; scikit-image has it."""
@@ -47,11 +48,23 @@ def write_node_page(
         numbers = ", ".join(f"{number:g}" for number in _list_steps(value))
         blocks += [f"`{value.name}` at {numbers}:", f"![{value.name} at {numbers}](../{strip})"]
     blocks += rest
+    if names := _list_names(node):
+        blocks += ["## In other programs", "\n".join(["| program | name |", "|---|---|", *names])]
     blocks += ["## What it costs", f"{_describe_cost(node)} {times.get(node.id, '')}".strip()]
     if presets := list(presets):
         links = ", ".join(f"[{name}](../presets.md#{name})" for name in presets)
         blocks += ["## Presets that use it", links]
     return "\n\n".join(blocks) + "\n"
+
+
+def _list_names(node: type[Node]) -> list[str]:
+    """A row for each program whose menus have the node, with its names there."""
+    rows: list[str] = []
+    for program, words in PROGRAMS:
+        names = [name for name, wanted in words.items() if node.id in wanted.partition(":")[0].split()]
+        if names:
+            rows.append(f"| {program} | {', '.join(names)} |")
+    return rows
 
 
 def _find_main_value(node: type[Node]) -> Value | None:
@@ -71,8 +84,10 @@ def _describe_cost(node: type[Node]) -> str:
     """How many passes a node takes at its defaults, and the memory that they need."""
     facts = plan_facts(node)
     count = len(facts["passes"])
+    if not count and "image" in node.inputs:
+        return "At its defaults it leaves the picture as it is, and costs nothing."
     if not count:
-        return "It draws nothing itself."
+        return "No pass of the graphics card."
     width, height = facts["size"]
     passes = "1 pass" if count == 1 else f"{count} passes"
     return f"At its defaults {passes}, and {facts['peak_bytes'] / 2**20:.0f} MiB of textures at {width} x {height}."

@@ -32,7 +32,7 @@ def write_gallery() -> str:
             for name, control in graph.controls.items()
         ]
         if rows:
-            blocks.append("\n".join(["| control | |", "|---|---|", *rows]))
+            blocks.append("\n".join(["| control | what it does |", "|---|---|", *rows]))
     return "\n\n".join(blocks) + "\n"
 
 
