@@ -64,7 +64,7 @@ def _is_loading_extension(frame: FrameType | None) -> bool:
 
 @contextmanager
 def relay_requests(process: int, *, is_copy: bool = False) -> Iterator[list[int]]:
-    """Leave signals that ask this process to end to another one; the list that is given holds those that came.
+    """Pass signals that ask this process to end on to another process; yields the list of those received so far.
 
     An interrupt is not passed on, because a terminal sends it to both processes. A copy of this process ignores those
     (`ignore_interrupts`), and is asked to end instead: an interrupt may also come from a program, to this one alone.

@@ -125,7 +125,7 @@ class Library(Record, frozen=True):
         if (shader, function) not in self._uniforms:
             needed = frozenset({function})
             for text in reversed(self.closure((shader,), asker)):
-                needed |= text.only(needed).words
+                needed |= text.keep_needed(needed).words
             self._uniforms[shader, function] = needed & PASS_UNIFORMS
         return self._uniforms[shader, function]
 
@@ -156,7 +156,7 @@ class Library(Record, frozen=True):
         """The files that a function may need, its own first, with the words of the functions that it needs of each."""
         needed = frozenset({function})
         for text in reversed(self.closure((shader,), asker)):
-            words = text.only(needed).words if needed & text.functions.keys() else frozenset[str]()
+            words = text.keep_needed(needed).words if needed & text.functions.keys() else frozenset[str]()
             needed |= words
             yield text.name, words
 

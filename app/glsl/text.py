@@ -56,17 +56,17 @@ class GlslText(Struct, frozen=True, dict=True):
     def _cuts(self) -> dict[frozenset[str], GlslText]:
         return {}
 
-    def only(self, entries: frozenset[str]) -> GlslText:
+    def keep_needed(self, entries: frozenset[str]) -> GlslText:
         """The text without functions that `entries` do not need: another draw may need other accessors.
 
         Their lines stay, empty.
         """
         entries &= frozenset(self.functions)
         if entries not in self._cuts:
-            self._cuts[entries] = self._only(entries)
+            self._cuts[entries] = self._cut(entries)
         return self._cuts[entries]
 
-    def _only(self, entries: frozenset[str]) -> GlslText:
+    def _cut(self, entries: frozenset[str]) -> GlslText:
         needed: set[str] = set()
         todo = [*entries, *(self.outside & self.functions.keys())]
         while todo:

@@ -29,7 +29,7 @@ class PictureEncodings(Protocol):
 
 
 def choose_default_view(plan: Plan, surface: int, encodings: PictureEncodings) -> str:
-    """`none` where a surface of a plan is made of display-referred pictures alone, else "": the view of the config.
+    """The view `none` if an output of a plan is made of display-referred pictures only, else "": that of the config.
 
     If all of them are video for a BT.1886 display, it is `bt1886`, so that video comes back with the codes that it had.
 

@@ -46,7 +46,7 @@ def select_texts(context: PassContext, parts: PassParts) -> tuple[GlslText, ...]
     programs = dict.fromkeys(program for op in context.members for program in op.color_programs)
     for text in reversed((*files, *(program.text for program in programs))):
         # The own file of an inlined gather is included with the gather.
-        cut_text = text.only(needed if text.name in inlined_files else needed | inlined_words)
+        cut_text = text.keep_needed(needed if text.name in inlined_files else needed | inlined_words)
         needed |= cut_text.words
         selected.append(cut_text)
     return tuple(reversed(selected))

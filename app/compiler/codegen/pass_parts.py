@@ -154,7 +154,7 @@ def _pointwise_files(context: PassContext) -> list[str]:
 def _find_inlined(context: PassContext) -> Iterator[InlinedGather]:
     for number, op in enumerate(context.members):
         if isinstance(op, Gather):
-            text = context.library.closure((op.shader,), op.owner)[-1].only(frozenset({op.function}))
+            text = context.library.closure((op.shader,), op.owner)[-1].keep_needed(frozenset({op.function}))
             yield InlinedGather(op, text, f"g{number}_")
 
 

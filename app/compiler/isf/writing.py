@@ -127,7 +127,7 @@ class IsfWriter:
         """The functions that convert between light and the display values of the format."""
         needed, lines = frozenset({"display_straight", "from_codes"}), list[str]()
         for text in reversed(self.library.closure(("lib/isf",), "export")):
-            used = text.only(needed)
+            used = text.keep_needed(needed)
             needed |= used.words
             lines = [line.rstrip() for line in used.body.split("\n") if line.strip()] + lines
         return [*lines, "float halation_light(float code) { return srgb_decode(code); }"]

@@ -117,7 +117,7 @@ def make_uniform(entry: IsfInput, plain: Scalar, display: bool) -> Uniform:
 
 
 def uniform_as_number(uniform: Uniform) -> float:
-    """What a formula of a size reads."""
+    """The number that a formula for the size of a pass reads; 0 for what is not a number."""
     return 0.0 if isinstance(uniform, tuple) else float(uniform)
 
 
@@ -133,13 +133,13 @@ def is_position(entry: IsfInput) -> bool:
 
 
 def write_isf_doc(doc: str, names: Mapping[str, str]) -> str:
-    """What the node says of itself."""
+    """The tooltip of the node: the description of the shader, and which inputs had to be renamed."""
     renamed = [f"{name} is called {node_name}" for name, node_name in names.items() if name != node_name]
     return "\n".join([doc, *(f"{', '.join(renamed)}." for _ in renamed[:1])])
 
 
 def _choose_default(entry: IsfInput) -> tuple[float, ...]:
-    """As the head says, else the middle of what is allowed for points, black, or the least."""
+    """The default of the header; without one the middle of the range for points, black for colors, else the minimum."""
     if entry.default:
         return entry.default
     if entry.type == "point2D":

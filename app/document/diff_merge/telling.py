@@ -165,7 +165,7 @@ class _PartDescription:
         yield DifferenceLine("~", f"{self.name}: {value_text(before, old)} -> {value_text(after, new)}")
 
     def _entry(self, part: Any) -> str:
-        """The sentence for a part that was added or removed; "" for a part of another one, such as a value."""
+        """The sentence for a part that was added or removed; "" if the sentence of another part covers it."""
         here = local_path(self.at)
         if here[0] == "links" and len(here) == 2:
             return f"link {self.name} <- {part}"
