@@ -7,12 +7,12 @@ settings: the worker starts another process for others.
 from __future__ import annotations
 
 import base64
+import contextlib
 import json
 import os
 import select
 import sys
 import tempfile
-import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from importlib import import_module
@@ -24,7 +24,7 @@ from msgspec.structs import replace
 
 from ..cluster.chunk import EntryOutcome, FrameChunk
 from ..cluster.path_map import PathMap
-from ..cluster.render_process import IDLE_SECONDS
+from ..cluster.render_process import IDLE_SECONDS, DeviceRequest
 from ..cluster.versions import describe_versions, find_version_fault
 from ..errors import DeviceError, GraphError, HalationError, InputError, UsageError
 from ..graph.paths import change_paths, resolve_path
@@ -32,10 +32,12 @@ from ..regression.cluster_cases import run_case_text
 from ..renderer.jobs.pipeline import KeptResults
 from ..renderer.jobs.source_files import FileHashes
 from ..resources.input_files import content_hash, fingerprint
+from ..resources.struct_json import read_struct
 from . import parsing
 from .execute_batch import make_entry_item, open_entry_graph
-from .job_setup import choose_budget, describe_costs, make_output_settings, make_request, open_renderer
+from .job_setup import choose_budget, describe_costs, make_output_settings, make_request, open_job_device
 from .outcome import INTERRUPTED, describe_fault
+from .part_lines import FrameLines, PartLines
 
 if TYPE_CHECKING:
     from ..cluster.chunk import ChunkStage
@@ -44,8 +46,11 @@ if TYPE_CHECKING:
     from ..renderer.execution.texture_pool import TexturePool
     from ..renderer.jobs.item_session import JobItem, SharedHistory
     from ..renderer.jobs.render_job import RenderJob
-    from ..renderer.jobs.reports import FrameReport, ItemReport, JobReport
+    from ..renderer.jobs.reports import ItemReport, JobReport
     from ..resources.sandbox import Sandbox
+
+_PIECE_BYTES = 1 << 16
+"""Bytes that are read at once at most: as many as a pipe holds."""
 
 _POINTLESS = (UsageError, GraphError)
 """Errors that all frames of a job have alike."""
@@ -63,6 +68,8 @@ def render_chunks(sandbox: Sandbox) -> int:
             for line in _read_lines():
                 if line.startswith('{"case"'):
                     _write_line(run_case_text(line))
+                elif line.startswith('{"device"'):
+                    renderer.open_device(read_struct(line, DeviceRequest).device)
                 else:
                     renderer.render(FrameChunk.from_json(line))
         except KeyboardInterrupt:  # the job is cancelled, and who cancels it says so
@@ -77,11 +84,18 @@ def _load_modules() -> None:
 
 
 def _read_lines() -> Iterator[str]:
-    while sys.platform == "win32" or select.select([sys.stdin.buffer], [], [], IDLE_SECONDS)[0]:
-        line = sys.stdin.buffer.readline()
-        if not line:
+    """The lines of standard input, until it ends or none comes for some time.
+
+    It is read without a buffer: lines that lie in one already would not end a wait.
+    """
+    source, rest = sys.stdin.fileno(), b""
+    while sys.platform == "win32" or select.select([source], [], [], IDLE_SECONDS)[0]:
+        piece = os.read(source, _PIECE_BYTES)
+        if not piece:
             return
-        yield line.decode("utf-8")
+        *lines, rest = (rest + piece).split(b"\n")
+        for line in lines:
+            yield line.decode("utf-8")
 
 
 def _write_line(facts: Mapping[str, Any]) -> None:
@@ -101,6 +115,11 @@ class ChunkRenderer:
         self._wrong_file = ""
         """The file that was compared last."""
 
+    def open_device(self, job: RenderJob) -> None:
+        """Open the device that chunks of a job need. Where that fails, they try again and say so."""
+        with contextlib.suppress(DeviceError):
+            self._open_renderer(self._localize_job(job, PathMap(())))
+
     def render(self, chunk: FrameChunk) -> None:
         """Render a chunk and answer: a line for each frame, then one for all, or one that this machine cannot."""
         paths = PathMap(chunk.path_map)
@@ -112,7 +131,7 @@ class ChunkRenderer:
             if fault := find_version_fault(describe_versions(graph), chunk.versions):
                 self._write_line({"refusal": fault})
                 return
-            renderer = self._open_renderer(chunk.job, graph)
+            renderer = self._open_renderer(chunk.job)
             self._renew_job(chunk, renderer.runner.textures, graph)
             if faults := self._check_files(chunk, graph, paths):
                 self._write_line({"faults": faults, "costs": {}})
@@ -169,7 +188,7 @@ class ChunkRenderer:
 
         targets = parsing.find_targets(graph, chunk.job.node)
         faults, outcomes = dict[str, Mapping[str, Any]](), dict[str, EntryOutcome]()
-        lines = _PartLines(self._write_line)
+        lines = PartLines(self._write_line)
 
         def report_item(report: ItemReport) -> None:
             passes = sum(frame.passes for frame in report.frames)
@@ -213,7 +232,7 @@ class ChunkRenderer:
         from ..renderer.jobs.job import run_batch
 
         reports: list[ItemReport] = []
-        progress = _FrameLines(_PartLines(self._write_line))
+        progress = FrameLines(PartLines(self._write_line))
         report = run_batch(
             renderer,
             [("", lambda: item)],
@@ -237,9 +256,11 @@ class ChunkRenderer:
             self._last_graph = key, loads(*key[:1], "-", key[1], sandbox=chunk.job.sandbox)
         return self._last_graph[1]
 
-    def _open_renderer(self, job: RenderJob, graph: Graph) -> Renderer:
+    def _open_renderer(self, job: RenderJob) -> Renderer:
+        from ..renderer import Renderer
+
         if self._renderer is None:
-            self._renderer = open_renderer(job, graph)
+            self._renderer = Renderer(open_job_device(job), sandbox=job.sandbox)
         return self._renderer
 
     def _renew_job(self, chunk: FrameChunk, textures: TexturePool, graph: Graph) -> None:
@@ -365,29 +386,3 @@ def _describe_costs(report: JobReport, renderer: Renderer) -> dict[str, Any]:
     """What a chunk has cost, ready for JSON."""
     costs = describe_costs(report, renderer.device.description)
     return {**costs, "seconds": {name: round(part, 4) for name, part in report.seconds.items()}}
-
-
-class _PartLines:
-    """Writes a line for each finished frame or file, with the seconds since the one before."""
-
-    def __init__(self, write_line: Callable[[Mapping[str, Any]], None]) -> None:
-        self._write_line, self._started = write_line, time.perf_counter()
-
-    def write(self, part: int, passes: int, *, is_kept: bool, **facts: object) -> None:
-        """Write the line."""
-        seconds, self._started = time.perf_counter() - self._started, time.perf_counter()
-        self._write_line({"frame": part, "seconds": round(seconds, 4), "kept": is_kept, "passes": passes, **facts})
-
-
-class _FrameLines:
-    """Has a line written for each finished frame."""
-
-    def __init__(self, lines: _PartLines) -> None:
-        self._lines = lines
-
-    def report_pass(self, frame: int, passes_done: int, total: int, nodes: Sequence[str]) -> None:
-        """Nothing: passes of several machines cannot be shown."""
-
-    def report_frame(self, report: FrameReport, frames_done: int, total: int) -> None:
-        """Write the line."""
-        self._lines.write(report.frame, report.passes, is_kept=report.is_kept)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ..compiler import Memory, Plan
     from ..graph import Graph, Port
     from ..inputs.prefetch import Prefetcher
-    from ..renderer import Renderer, RenderRequest
+    from ..renderer import Device, Renderer, RenderRequest
     from ..renderer.jobs.job import JobReport, OutputSettings
     from ..renderer.jobs.render_job import RenderJob
 
@@ -28,15 +28,19 @@ def open_job_renderer(job: RenderJob, graph: Graph, prefetcher: Prefetcher | Non
 
 def open_renderer(job: RenderJob, graph: Graph, prefetcher: Prefetcher | None = None) -> Renderer:
     """Open the device of a job. Raises DeviceError."""
-    from ..renderer import Renderer, open_device, open_pinned
+    from ..renderer import Renderer
 
-    device = (
-        open_pinned(job.memory, sandbox=job.sandbox)
-        if job.deterministic
-        else open_device(job.form, job.memory, sandbox=job.sandbox)
-    )
     budget = choose_budget(job, graph) if len(job.frames) != 1 else 0
-    return Renderer(device, budget=budget, prefetcher=prefetcher, sandbox=job.sandbox)
+    return Renderer(open_job_device(job), budget=budget, prefetcher=prefetcher, sandbox=job.sandbox)
+
+
+def open_job_device(job: RenderJob) -> Device:
+    """The device that a job asks for. Raises DeviceError."""
+    from ..renderer import open_device, open_pinned
+
+    if job.deterministic:
+        return open_pinned(job.memory, sandbox=job.sandbox)
+    return open_device(job.form, job.memory, sandbox=job.sandbox)
 
 
 def choose_budget(job: RenderJob, graph: Graph) -> int:

@@ -81,13 +81,26 @@ class AssignmentQueue:
         self._is_chain = is_chain
         self._cost = 0.0
         """Seconds of a frame: the mean of those that were measured, where newer ones count more."""
+        self._is_sure = False
+        """True if a frame was measured that does not take the start of a process too."""
+        self.sends_ahead = False
+        """True if a worker gets its next chunk while it renders one: not before a first chunk tells what frames cost.
+        """
 
     def __len__(self) -> int:
         return len(self._fresh) + sum(len(assignment.frames) for assignment in self._repeated)
 
-    def note_cost(self, seconds: Sequence[float]) -> None:
-        """Take in what frames of a chunk have cost."""
-        self._cost = average_cost(self._cost, seconds)
+    def note_cost(self, seconds: Sequence[float], *, is_first: bool = False) -> None:
+        """Take in what frames of a chunk have cost; none that were kept.
+
+        In the first chunk of a worker, its first frame takes the start of a process too: it counts only until others
+        are known.
+        """
+        later = seconds[1:] if is_first else seconds
+        if later and not self._is_sure:
+            self._cost, self._is_sure = 0.0, True
+        self._cost = average_cost(self._cost, later if self._is_sure else seconds)
+        self.sends_ahead = True
 
     def take(self, slots: int) -> Assignment | None:
         """The next frames for a worker, of which `slots` render side by side. Towards the end chunks are smaller, but

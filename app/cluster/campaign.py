@@ -27,7 +27,8 @@ if TYPE_CHECKING:
     from distributed import Client, Future
 
 _WAVES = 2
-"""Chunks that are sent for each place where one is rendered: while a worker renders one, it has the next."""
+"""Chunks that are sent for each place where one is rendered: while a worker renders one, it has the next. See
+`sends_ahead` of the queues."""
 
 _LOOK_INTERVAL = 1.0
 """Seconds between two questions which workers there are: a choice."""
@@ -96,8 +97,7 @@ class FrameCampaign:
 
     def _send_chunks(self) -> None:
         slots = self._workers.slots
-        # A piece of the history must not wait behind frames that others could render.
-        most = slots if self._chunk.stage else _WAVES * slots
+        most = _WAVES * slots if self._frames.sends_ahead else slots
         while len(self._frames) and len(self._sent) < most and self._workers.usable:
             assignment = self._frames.take(slots)
             if assignment is None:
@@ -209,9 +209,11 @@ class FrameCampaign:
         self.report.kept.update(report.kept)
         self.report.entries.update(report.entries)
         self._note_frames(report.seconds)
+        is_first = report.worker not in self.report.workers
         self.report.workers.add(report.worker)
         self.report.costs += [report.costs] if report.costs else []
-        self._frames.note_cost([cost for frame, cost in report.seconds.items() if frame not in report.kept])
+        costs = [cost for frame, cost in report.seconds.items() if frame not in report.kept]
+        self._frames.note_cost(costs, is_first=is_first)
         missing = self._list_missing(report, assignment)
         if report.death:
             is_stage = assignment.stage is not None and assignment.stage.kind != "frames"

@@ -183,6 +183,9 @@ def start_cluster(count: int) -> Iterator[LocalCluster]:
             silence_logs=logging.CRITICAL,
         )
     try:
+        # On a busy machine Dask returns before they are there, and the job would believe that it has none.
+        with contextlib.suppress(TimeoutError):
+            cluster.wait_for_workers(count, timeout=ANSWER_SECONDS)
         yield cluster
     finally:
         with contextlib.suppress(Exception):

@@ -28,6 +28,7 @@ from msgspec import Struct, field
 from ..renderer.jobs.render_job import RenderJob, worker_command
 from ..resources.heartbeat import Watchdog
 from ..resources.machine import available_cores, resident_memory
+from ..resources.struct_json import write_struct
 from ..resources.typed_data import convert_data
 from .chunk import ChunkReport, EntryOutcome, FrameChunk, StageReport
 
@@ -60,6 +61,12 @@ class ProcessLimits(Struct, frozen=True):
     seconds: float
     memory: int = 0
     resident: int = 0
+
+
+class DeviceRequest(Struct, frozen=True):
+    """Asks a process to open the device of a job, of which nothing else is said."""
+
+    device: RenderJob
 
 
 class ProcessAnswer(Struct, frozen=True):
@@ -134,6 +141,11 @@ class RenderProcess:
             "", seconds, tuple(kept), faults, costs, answer.death, refusal, answer.is_cancelled, stage, entries
         )
 
+    def open_device(self, job: RenderJob) -> None:
+        """Have the device opened that a job needs, before there is a chunk of it. Whether it can be is said then."""
+        facts = RenderJob(sandbox=job.sandbox, deterministic=job.deterministic, form=job.form, memory=job.memory)
+        self._send(write_struct(DeviceRequest(facts)))
+
     def ask(
         self,
         line: str,
@@ -142,11 +154,8 @@ class RenderProcess:
         limits: ProcessLimits,
     ) -> ProcessAnswer:
         """Send a line of JSON and wait for the answer, which lines about frames may precede."""
-        assert self._process.stdin is not None
         watchdog = Watchdog(self._heartbeat, limits.seconds, limits.memory, tries_first=True)
-        with contextlib.suppress(OSError):
-            self._process.stdin.write(f"{line}\n")
-            self._process.stdin.flush()
+        self._send(line)
         checked_at = time.monotonic()
         while True:
             answer_line = self._read_line()
@@ -194,6 +203,12 @@ class RenderProcess:
             self._process.kill()
         self._process.wait()
         self._folder.cleanup()
+
+    def _send(self, line: str) -> None:
+        assert self._process.stdin is not None
+        with contextlib.suppress(OSError):
+            self._process.stdin.write(f"{line}\n")
+            self._process.stdin.flush()
 
     def _read_line(self) -> str | None:
         """The next line; "" if none comes for a moment, None after the last one."""
@@ -250,9 +265,12 @@ class RenderProcessPool:
             self._idle.append((kind, process))
 
     def warm(self, job: RenderJob, count: int) -> None:
-        """Start processes before there are chunks for them: they load what they need meanwhile."""
+        """Start processes before there are chunks for them: they load what they need meanwhile, and open a device."""
         threads = max(1, available_cores() // count)
         processes = [(find_kind(job), RenderProcess(threads)) for _ in range(min(count, available_cores()))]
+        for _, process in processes:
+            if not job.sandbox.root:  # another folder with `--map`, which chunks tell
+                process.open_device(job)
         with self._lock:
             self._idle += processes
 

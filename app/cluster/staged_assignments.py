@@ -26,6 +26,10 @@ _SURVEY_FRAMES = 2
 class StagedAssignments:
     """The frames of a job that nobody renders yet, with the stages before them. `first` is where the history begins."""
 
+    sends_ahead = False
+    """A worker gets no second chunk while it renders one: the history must not wait behind frames that others could
+    render."""
+
     def __init__(self, frames: Sequence[int], first: int, folder: str, *, checks: bool) -> None:
         self._first, self._folder = first, folder
         self._targets = sorted(set(frames))
@@ -50,9 +54,9 @@ class StagedAssignments:
     def __len__(self) -> int:
         return len(self._unfinished)
 
-    def note_cost(self, seconds: Sequence[float]) -> None:
-        """Take in what frames of a chunk have cost."""
-        self._note_cost("frames", seconds)
+    def note_cost(self, seconds: Sequence[float], *, is_first: bool = False) -> None:
+        """Take in what frames of a chunk have cost, the first one of its worker or a later one."""
+        self._note_cost("frames", seconds[1:] if is_first and len(seconds) > 1 else seconds)
 
     def take(self, slots: int) -> Assignment | None:
         """The next work for one of `slots` workers; None where other work must be finished first."""

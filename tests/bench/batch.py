@@ -1,7 +1,7 @@
 """Measures `render --each` against single calls and a loop over `hal.render`: the figures of docs/batch.md.
 
-.venv/bin/python tests/bench/batch.py                             # 200 photos of 2 MP: an hour on two cores
-.venv/bin/python tests/bench/batch.py --photos 20 --rounds 1      # minutes
+.venv/bin/python tests/bench/batch.py                             # 200 photos of 2 MP, minutes
+.venv/bin/python tests/bench/batch.py --single 200                # with as many single calls, an hour on two cores
 """
 
 from __future__ import annotations
@@ -88,11 +88,20 @@ def write_photos(folder: Path, count: int) -> None:
         image.write(str(folder / "photos" / f"p{number:03}.jpg"))
 
 
-def run(folder: Path, *words: str) -> float:
-    """The seconds of a command."""
+def run(folder: Path, *words: str) -> tuple[float, int]:
+    """The seconds of a command, and the bytes that it takes at most."""
     began = time.perf_counter()
-    subprocess.run(words, cwd=folder, env=os.environ, check=True, capture_output=True)
-    return time.perf_counter() - began
+    with subprocess.Popen(words, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode:
+        raise subprocess.CalledProcessError(process.returncode, words)
+    return time.perf_counter() - began, usage.ru_maxrss << 10
+
+
+def render_each(folder: Path, pattern: str) -> tuple[float, int]:
+    """One command for all photos of a pattern; its seconds and bytes."""
+    return run(folder, *HALATION, "render", "look.json", "--each", pattern, "-o", "each/{stem}.png")
 
 
 def render_singly(folder: Path, photos: list[Path]) -> float:
@@ -100,31 +109,41 @@ def render_singly(folder: Path, photos: list[Path]) -> float:
     (folder / "single").mkdir(exist_ok=True)
     files = [(str(photo), f"single/{photo.stem}.png") for photo in photos]
     return sum(
-        run(folder, *HALATION, "render", "look.json", "-i", f"beauty={photo}", "-o", name) for photo, name in files
+        run(folder, *HALATION, "render", "look.json", "-i", f"beauty={photo}", "-o", name)[0] for photo, name in files
     )
 
 
-def main() -> None:
+def measure(folder: Path, count: int, single: int, rounds: int) -> None:
     """Measure each way once in each round, and print medians and their ratios."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--photos", type=int, default=200)
-    parser.add_argument("--rounds", type=int, default=3)
-    arguments = parser.parse_args()
+    photos = sorted((folder / "photos").iterdir())
     seconds: dict[str, list[float]] = {"--each": [], "a loop": [], "single calls": []}
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        write_photos(folder, arguments.photos)
-        photos = sorted((folder / "photos").iterdir())
-        words = ("render", "look.json", "--each", "photos/*.jpg", "-o", "each/{stem}.png")
-        for _ in range(arguments.rounds):
-            seconds["--each"].append(run(folder, *HALATION, *words))
-            seconds["a loop"].append(run(folder, sys.executable, "-c", LOOP))
-            seconds["single calls"].append(render_singly(folder, photos))
+    peaks: list[int] = []
+    for _ in range(rounds):
+        whole, peak = render_each(folder, "photos/*.jpg")
+        peaks.append(peak)
+        seconds["--each"].append(whole)
+        seconds["a loop"].append(run(folder, sys.executable, "-c", LOOP)[0])
+        seconds["single calls"].append(render_singly(folder, photos[:single]) * count / single)
     medians = {way: statistics.median(measured) for way, measured in seconds.items()}
     for way, median in medians.items():
-        print(f"{way}: {median:.2f} s for {arguments.photos} photos  {[round(one, 2) for one in seconds[way]]}")
+        print(f"{way}: {median:.2f} s for {count} photos  {[round(one, 2) for one in seconds[way]]}")
+    print(f"single calls: {single} were measured")
     print(f"--each takes {medians['--each'] / medians['single calls']:.2f} of single calls (wanted: at most 0.35)")
     print(f"--each takes {medians['--each'] / medians['a loop']:.2f} of a loop (wanted: at most 1.15)")
+    few = render_each(folder, "photos/p??0.jpg")[1]
+    print(f"memory: {few / 1e6:.0f} MB at most for {(count + 9) // 10} photos, {max(peaks) / 1e6:.0f} MB for {count}")
+
+
+def main() -> None:
+    """Measure with the arguments of the command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--photos", type=int, default=200)
+    parser.add_argument("--single", type=int, default=20, help="how many single calls stand for all")
+    parser.add_argument("--rounds", type=int, default=3)
+    arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory() as name:
+        write_photos(Path(name), arguments.photos)
+        measure(Path(name), arguments.photos, min(arguments.single, arguments.photos), arguments.rounds)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Measures `render --cluster`, and computes what a large cluster would reach: the figures of docs/cluster.md.
 
 .venv/bin/python tests/bench/cluster.py measure     # minutes, on an idle machine
-.venv/bin/python tests/bench/cluster.py overhead    # the same of 100 frames of 1920x1080
+.venv/bin/python tests/bench/cluster.py overhead    # the same of 100 frames of half a second
 .venv/bin/python tests/bench/cluster.py interrupt
 .venv/bin/python tests/bench/cluster.py simulate    # a cluster of a thousand workers
 .venv/bin/python tests/bench/cluster.py check       # the simulation against real jobs whose workers only wait
@@ -68,6 +68,8 @@ def measure_overhead(folder: Path, size: str, counts: tuple[int, int], rounds: i
             for name, share in shares.items():
                 words = ("shot.json", "--size", size, "--frames", f"1-{count}", "-o", "f.####.exr")
                 measured.setdefault((name, count), []).append(run(folder, *words, *share)[:2])
+        alone, shared = (measured[name, counts[1]][-1] for name in shares)
+        print(f"{counts[1]} frames: {alone[0]:.2f} s by -j, {shared[0]:.2f} s: {shared[0] / alone[0]:.3f}", flush=True)
     processors: list[float] = []
     for name in shares:
         few, many = (measured[name, count] for count in counts)
@@ -195,7 +197,7 @@ def main() -> None:
             measure_interrupt(folder, 5)
             return
         if sys.argv[1:2] == ["overhead"]:
-            measure_overhead(folder, "1920x1080", (4, 100), 2)
+            measure_overhead(folder, "2880x1620", (4, 100), int(sys.argv[2]) if sys.argv[2:] else 4)
             return
         measure_rate(folder, 10_000)
         measure_overhead(folder, "1280x720", (4, 44), 3)
