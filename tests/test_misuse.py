@@ -14,6 +14,7 @@ import pytest
 from halation.graph import Control, Graph, Group, Input, Output, Port, Settings, Unknown
 from halation.nodes import Kind
 from halation.nodes.color.exposure import Exposure
+from halation.nodes.input.shape import Shape
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -154,6 +155,14 @@ def test_frames_that_run_backwards_are_a_fault_of_the_graph() -> None:
     graph = replace(small_graph(), settings=Settings(frames=(5, 1)))
     with pytest.raises(hal.HalationError, match="the frames 5 to 1 of the graph run backwards"):
         hal.render(graph, {"beauty": SMALL})
+
+
+def test_outlines_that_memory_could_not_hold_are_refused() -> None:
+    """Tables for 64 million tiles would take 16 GiB before the first pixel."""
+    graph = Graph(outputs={"image": Output(Kind.FIELD)}).add("star", Shape(shape="spline"))
+    graph = graph.connect(Port("star", "mask"), Port("outputs", "image"))
+    with pytest.raises(hal.HalationError, match="node 'star': an outline in 131072x131072 pixels would take too much"):
+        hal.render(graph, size=(131_072, 131_072))
 
 
 def test_any_thread_renders() -> None:

@@ -17,7 +17,7 @@ from . import rules
 from .enough import Enough
 from .evaluate_at_frame import animation_fault, find_expression_loops
 from .graph import Graph, Group, Item, find_setting, signature
-from .model import MAX_GROUP_DEPTH, Input, Port, Unknown
+from .model import MAX_GROUP_DEPTH, MAX_SIDE, Input, Port, Unknown
 from .named_items import find_item_faults
 from .names import INPUTS, OUTPUTS, can_compare_all, did_you_mean, find_name_fault, name_fault, pick
 from .rules import Rule, Severity
@@ -132,6 +132,7 @@ def _inside(graph: Graph, node_types: Mapping[str, type[Node]], enough: Enough, 
     for loop in find_loops(feeding, in_order=True) if has_loops(feeding) else ():
         yield Problem(loop[0], "", describe_loop(loop), rules.LOOP)
     yield from _animations(graph)
+    yield from _settings(graph)
     yield from _leftovers(graph, enough)
     for node, socket, sentence, at in find_unmerged(graph.extra):
         yield Problem(node, socket, sentence, rules.UNMERGED, at)
@@ -148,10 +149,17 @@ def _animations(graph: Graph) -> Iterator[Problem]:
             yield Problem(port.node, port.socket, sentence, rules.DEAD_ANIMATION, f"animation.{port}")
     for port, fault in find_expression_loops(graph):
         yield Problem(port.node, port.socket, fault, rules.BAD_ANIMATION, f"animation.{port}")
+
+
+def _settings(graph: Graph) -> Iterator[Problem]:
     first, last = graph.settings.frames or (1, 1)
     if last < first:
         sentence = f"the frames {first} to {last} run backwards: exchange the two"
         yield Problem("", "", sentence, rules.BACKWARD_FRAMES, "settings.frames")
+    width, height = graph.settings.size or (1, 1)
+    if max(width, height) > MAX_SIDE:
+        sentence = f"a canvas of {width}x{height} pixels is too large: each side may have at most {MAX_SIDE:,}"
+        yield Problem("", "", sentence, rules.HUGE_CANVAS, "settings.size")
 
 
 def _group(id: str, item: Group, node_types: Mapping[str, type[Node]], enough: Enough, depth: int) -> Iterator[Problem]:

@@ -80,6 +80,9 @@ DEAD_ANIMATION = Rule(
 BACKWARD_FRAMES = Rule(
     "backward-frames", "error", "The last frame of the graph is before its first frame.", "Swap them."
 )
+HUGE_CANVAS = Rule(
+    "huge-canvas", "error", "The canvas is longer on a side than any picture may be.", "Give it fewer pixels."
+)
 DEEP_GROUPS = Rule("deep-groups", "error", "Groups are nested too deep.", "Flatten some of them.")
 BAD_DEFAULT = Rule(
     "bad-default", "error", "The default of an input does not fit its type.", "Give one number, or one per channel."
@@ -118,6 +121,7 @@ RULES = (
     BAD_ANIMATION,
     DEAD_ANIMATION,
     BACKWARD_FRAMES,
+    HUGE_CANVAS,
     DEEP_GROUPS,
     BAD_DEFAULT,
     BAD_CONTROL,

@@ -12,14 +12,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import GraphError, UsageError
+from ..graph.model import MAX_SIDE
 
 if TYPE_CHECKING:
     import numpy as np
 
     from ..graph import Graph, Port
-
-MAX_SIDE = 131_072
-"""Pixels on a side: what files may have (docs/security.md)."""
 
 _SHOWN_CHARACTERS = 60
 """How much of an argument a message repeats."""

@@ -10,7 +10,7 @@ from types import FrameType
 
 import pytest
 from halation.errors import GraphError
-from halation.graph import Control, Graph, Group, Input, Output, Port, Problem, Unknown, problems, rules
+from halation.graph import Control, Graph, Group, Input, Output, Port, Problem, Settings, Unknown, problems, rules
 from halation.graph.unmerged import find_unmerged
 from halation.nodes import Kind
 from hypothesis import given, settings
@@ -267,3 +267,10 @@ def test_conflicts_are_shown_at_their_nodes(keys: str, node: str, socket: str) -
     (found,) = find_unmerged({"": {"conflicts": (entry,)}})
     assert found[:2] == (node, socket) and found[3] == keys.replace(" ", ".")
     assert "ours has 1, theirs has 2" in found[2]
+
+
+@pytest.mark.parametrize(("size", "says"), [((131_072, 1), []), ((1, 131_073), ["a canvas of 1x131073 pixels"])])
+def test_a_canvas_has_sides_that_pictures_have(size: tuple[int, int], says: list[str]) -> None:
+    graph = dataclasses.replace(Graph(), settings=Settings(size=size))
+    faults = [problem for problem in problems(graph) if problem.rule is rules.HUGE_CANVAS]
+    assert [problem.sentence[: len("a canvas of 1x131073 pixels")] for problem in faults] == says

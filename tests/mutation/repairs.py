@@ -200,6 +200,13 @@ REPAIRS = (
         "tests/test_misuse.py::test_frames_that_run_backwards_are_a_fault_of_the_graph",
     ),
     Repair(
+        "outlines that memory could not hold are refused",
+        "app/compiler/lowering/outline_tables.py",
+        "    if across * down * len(fills) > MOST_TILES:",
+        "    if across * down * len(fills) > 2**10 * MOST_TILES:",
+        "tests/test_misuse.py::test_outlines_that_memory_could_not_hold_are_refused",
+    ),
+    Repair(
         "frames of the API are whole numbers",
         "app/scripting/arguments.py",
         '    return check_frame(_whole_number("frame", frame))',

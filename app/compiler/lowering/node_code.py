@@ -6,16 +6,24 @@ from collections.abc import Mapping
 
 from halation.nodes import CameraModel, Draw, Drawn, Filter, Pointwise, Reach, Socket, find_fault_place
 
-from ...errors import GraphError, HalationError
+from ...errors import DeviceError, GraphError, HalationError, describe_owner
 
 PassNode = Filter | Pointwise
 """A node that is drawn in passes."""
 
 
 def run_passes(node: PassNode, recorder: Draw, path: str) -> Drawn | Mapping[str, Drawn | CameraModel]:
-    """What a node draws. Raises GraphError where the code of a plug-in fails: users cannot tell it from ours."""
+    """What a node draws.
+
+    Raises GraphError where the code of a plug-in fails, as users cannot tell it from ours, and DeviceError with the
+    name of the node for what would take too much memory.
+    """
     try:
         return node.passes(recorder)
+    except DeviceError as fault:
+        if fault.node:
+            raise
+        raise DeviceError(f"{describe_owner(path)}: {fault}", node=path) from fault
     except HalationError:
         raise
     except Exception as fault:

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from halation.nodes import OutlineFill
 
+from ...errors import DeviceError
 from .outline_cells import STRIP, TILE, SegmentCells, TileGrid, sort_into_cells
 from .outline_chords import NearChords, find_candidates
 from .outline_curves import Array, PlacedCurves, flatten, list_chords
@@ -25,6 +26,10 @@ _MODES = "union", "subtract", "intersect", "max", "min", "difference", "plus"
 _LINEAR = _MODES[:3]
 _KEEPING = "intersect", "min"
 _STRIPS = TILE // STRIP
+
+MOST_TILES = 1 << 23
+"""Of all outlines together: each takes some 250 bytes while tables are made, so 2 GiB. 1,000 outlines have so many in a
+picture of 1920x1080, 250 in one of 3840x2160."""
 
 
 class _SortedOutline(NamedTuple):
@@ -41,8 +46,17 @@ class _SortedOutline(NamedTuple):
 
 
 def build_tables(fills: Sequence[OutlineFill], size: tuple[int, int], beyond: int) -> Mapping[str, Array]:
-    """The tables of outlines by their names, as rows of four numbers in 32 bits."""
+    """The tables of outlines by their names, as rows of four numbers in 32 bits.
+
+    Raises DeviceError for so many outlines in so large a picture that memory could not hold them.
+    """
     across, down = (-(-side // TILE) + 2 * beyond for side in size)
+    if across * down * len(fills) > MOST_TILES:
+        outlines = "an outline" if len(fills) == 1 else f"{len(fills)} outlines"
+        raise DeviceError(
+            f"{outlines} in {size[0]}x{size[1]} pixels would take too much memory; "
+            "render smaller with --scale or --size"
+        )
     grid = TileGrid(across, down, beyond)
     prepared = [_prepare(fill, grid) for fill in fills]
     scale, offset, is_listed = _combine_levels(prepared, grid)
