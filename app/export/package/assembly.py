@@ -125,8 +125,8 @@ class _Assembly:
         passes: list[Record] = []
         for render_pass in plan.passes:
             places = [next(numbers) for _ in range(len(render_pass.uniforms) + bool(render_pass.weights))]
-            snapped = samples.find_snapped(places)
-            slots = [parts.add_slot(place, samples, snapped) for place in places]
+            jumps = samples.find_jumps(places)
+            slots = [parts.add_slot(place, samples, jumps) for place in places]
             record: Record = {
                 "nodes": list(render_pass.nodes),
                 "program": parts.add_program(render_pass.shader.source, render_pass.shader.vertex),
@@ -145,7 +145,7 @@ class _Assembly:
         for upload in plan.uploads:
             if is_number_table(upload.picture):
                 place = next(numbers)
-                slot = parts.add_slot(place, samples, samples.find_snapped([place]))
+                slot = parts.add_slot(place, samples, samples.find_jumps([place]))
                 surfaces[upload.surface]["numbers"] = slot
             else:
                 surfaces[upload.surface]["source"] = parts.add_source(upload, plan)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,13 @@ LINE = 2e-5
 """How far a sample may lie beside the polygon that leaves it out, as a part of the largest number: a hundredth of
 `BEND`, so that leaving out costs nothing against sampling."""
 
+_ASIDE = 1e-4
+"""How far beside the middle of a gap a jump begins and ends, as a part of the gap: more than places are rounded."""
+
 Record = dict[str, Any]
+Jumps = Mapping[str, Array]
+"""By knob, between which samples the whole numbers of a pass jump: a truth value for each gap."""
+
 PairSamples = tuple[list[float], list[float], Sequence[Sequence[Sample | None]]]
 """Values of two knobs, and the samples at all combinations of them; None where the passes are others."""
 
@@ -32,12 +39,13 @@ def write_slot(
     base: Sample,
     samples: Mapping[str, Mapping[float, Sample]],
     checks: list[Any],
-    snapped_knobs: frozenset[str] = frozenset(),
+    jumps: Jumps = MappingProxyType({}),
 ) -> Record:
     """A slot as JSON: its numbers at rest, and a curve for each knob that changes them.
 
     `checks` are points with all knobs elsewhere, and their samples: they decide whether curves are added or multiplied.
-    Along `snapped_knobs` the nearest sample counts, with nothing between.
+    Along a knob with `jumps` the nearest sample counts for whole numbers, with nothing between, and others jump where
+    these do.
     """
     slot = base.slots[number]
     lengths = {len(s.slots[number].numbers) for group in samples.values() for s in group.values()}
@@ -49,7 +57,9 @@ def write_slot(
         rows = np.array([_pad(sample.slots[number].numbers, length) for sample in group.values()])
         largest = max(float(np.abs(rows).max(initial=0.0)), _LEAST_NUMBER)
         if len(places) > 1 and np.abs(rows - rest).max(initial=0.0) > _SAME * largest:
-            is_snapped = name in snapped_knobs
+            is_snapped = name in jumps and (slot.is_whole or len(lengths) > 1)
+            if name in jumps and not is_snapped:
+                places, rows = _split(places, rows, jumps[name])
             keep = list(range(len(places))) if is_snapped else simplify(places, rows)
             curve: Record = {"knob": name, "at": _round(places[keep]), "values": [_round(row) for row in rows[keep]]}
             curves.append({**curve, "snap": True} if is_snapped else curve)
@@ -114,6 +124,15 @@ def _interpolate_grid(grid: Record, x: float, y: float) -> Array:
     values = np.array(grid["values"])
     lines = [np.array([np.interp(y, ys, column) for column in line.T]) for line in values]
     return np.array([np.interp(x, xs, column) for column in np.array(lines).T])
+
+
+def _split(places: Array, rows: Array, is_jump: Array) -> tuple[Array, Array]:
+    """A polygon that jumps in the middle of some of its gaps, as the nearest sample does."""
+    at = np.nonzero(is_jump)[0]
+    middles, aside = 0.5 * (places[at] + places[at + 1]), _ASIDE * (places[at + 1] - places[at])
+    inserted = np.repeat(at + 1, 2)
+    places = np.insert(places, inserted, np.stack([middles - aside, middles + aside], axis=1).ravel())
+    return places, np.insert(rows, inserted, np.stack([rows[at], rows[at + 1]], axis=1).reshape(-1, rows.shape[1]), 0)
 
 
 def simplify(places: Array, rows: Array) -> list[int]:

@@ -15,8 +15,8 @@ from ...compiler.knobs import FRAME
 from ...resources.color_program import LookupTable
 from ...resources.mesh import Mesh
 from ...resources.picture import Picture
-from .curves import PairSamples, Record, add_grids, measure_error, write_slot
-from .sampling import LoadFunction, Sample
+from .curves import Jumps, PairSamples, Record, add_grids, measure_error, write_slot
+from .sampling import Array, LoadFunction, Sample
 
 _ROUNDED = 0.51
 """How far from a line its rounded numbers are at most: a half, and the rounding of floats."""
@@ -40,22 +40,23 @@ class VariantSamples:
     checks: Checks
     pairs: Callable[[str, str], PairSamples]
 
-    def find_snapped(self, places: list[int]) -> frozenset[str]:
-        """The knobs along which the whole numbers of a pass jump, nobody knows exactly where.
+    def find_jumps(self, places: list[int]) -> Jumps:
+        """Along which knobs the whole numbers of a pass jump, nobody knows exactly where, and between which samples.
 
         Where weights become more or fewer, samples are so close that a polygon holds the jump.
         """
-        snapped: set[str] = set()
+        jumps: dict[str, Array] = {}
         for name, group in self.by_knob.items():
             xs, slots = np.array(list(group)), [[sample.slots[place] for place in places] for sample in group.values()]
             rows = np.array([[x for slot in row if slot.is_whole for x in slot.numbers] for row in slots])
             lengths = np.array([[len(slot.numbers) for slot in row] for row in slots])
             if len(xs) > 2:
                 lines = rows[0] + (xs - xs[0])[:, None] / (xs[-1] - xs[0]) * (rows[-1] - rows[0])
-                is_unknown = np.diff(rows, axis=0).any(axis=1) & ~np.diff(lengths, axis=0).any(axis=1)
+                is_changed = np.diff(rows, axis=0).any(axis=1)
+                is_unknown = is_changed & ~np.diff(lengths, axis=0).any(axis=1)
                 if np.abs(lines - rows).max(initial=0.0) > _ROUNDED and is_unknown.any():
-                    snapped.add(name)
-        return frozenset(snapped)
+                    jumps[name] = is_changed
+        return jumps
 
     def has_one_length(self, place: int) -> bool:
         """True if a slot has equally many numbers everywhere."""
@@ -83,9 +84,9 @@ class SharedParts:
         """The number of a program, GLSL 4.10."""
         return self.programs.setdefault((fragment, vertex), len(self.programs))
 
-    def add_slot(self, place: int, samples: VariantSamples, snapped: frozenset[str]) -> int:
+    def add_slot(self, place: int, samples: VariantSamples, jumps: Jumps) -> int:
         """The number of a slot with all its curves."""
-        record = write_slot(place, samples.rest, samples.by_knob, samples.checks, snapped)
+        record = write_slot(place, samples.rest, samples.by_knob, samples.checks, jumps)
         if len(record.get("curves", ())) > 1:
             if samples.has_one_length(place):
                 add_grids(record, place, samples.pairs, samples.checks, POOR_FIT / _GRID_MARGIN)
