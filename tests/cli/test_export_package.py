@@ -16,11 +16,12 @@ import pytest
 from exr_files import read
 from halation import document
 from halation.compiler import Plan, Request, compile_graph
-from halation.export.package.curves import read_slot, simplify
+from halation.export.package.curves import read_slot, simplify, write_slot
 from halation.export.package.dialects import COVERING_VERTEX, DIALECTS
 from halation.export.package.exact_functions import use_exact_functions
+from halation.export.package.parts import VariantSamples
 from halation.export.package.planning import TARGET
-from halation.export.package.sampling import Sample
+from halation.export.package.sampling import Sample, Slot
 from halation.export.package.variants import MAX_SPANS, find_axis
 from halation.inputs.provider import MediaProvider
 from halation.presets import paths
@@ -261,3 +262,22 @@ def test_a_polygon_is_simplified_without_loss() -> None:
     bent = np.stack([np.maximum(xs - 0.5, 0.0), 3.0 * xs], axis=1)
     assert simplify(xs, bent) == [0, 32, 64]
     assert len(simplify(xs, (xs**2)[:, None])) > 30
+
+
+def test_numbers_beside_a_jump_are_interpolated() -> None:
+    """The width of a line, and how far it reaches in whole pixels: samples lie close where the reach jumps alone."""
+    places = (8.1, 15.9, 16.1, 20.0)
+
+    def sample(width: float) -> Sample:
+        numbers = (np.array([0.25 * width]), np.array([np.ceil(0.125 * width) + 2.0]))
+        slots = tuple(Slot(number, is_whole=bool(at)) for at, number in enumerate(numbers))
+        return Sample(None, 0, slots)  # pyright: ignore[reportArgumentType]
+
+    samples = VariantSamples(sample(9.6), {"width": {x: sample(x) for x in places}}, [], lambda a, b: ([], [], []))
+    jumps = samples.find_jumps([0, 1])
+    width, reach = (write_slot(at, samples.rest, samples.by_knob, [], jumps) for at in (0, 1))
+    for x in (8.1, 9.6, 12.0, 15.8, 16.2, 19.0, 20.0):
+        assert read_slot(width, {"width": x}) == pytest.approx([0.25 * x], abs=1e-6)
+        assert read_slot(reach, {"width": x}) == [np.ceil(0.125 * x) + 2.0]
+    for x in (15.99, 16.01):  # in the gap both jump at once
+        assert read_slot(width, {"width": x}) == pytest.approx([0.25 * (15.9 if x < 16.0 else 16.1)])
