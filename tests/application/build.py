@@ -26,7 +26,16 @@ from urllib.parse import quote
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
-_WHOLE_PACKAGES = ("imgui_bundle", "OpenImageIO", "PyOpenColorIO", "pyoidn", "dask", "distributed", "trimesh")
+_WHOLE_PACKAGES = (
+    "imgui_bundle",
+    "OpenImageIO",
+    "PyOpenColorIO",
+    "pyoidn",
+    "dask",
+    "distributed",
+    "trimesh",
+    "shellingham",
+)
 """Packages whose data or lazily imported modules PyInstaller does not find by itself."""
 
 _NOT_USED = ("pip", "setuptools", "pkg_resources", "PyInstaller")
