@@ -1,6 +1,7 @@
 """What rays march through: the picture of all surfaces of shaders/lib/march.glsl."""
 
 import math
+from typing import Any
 
 from .._declare import Draw, Drawn, Pixels, Vector
 
@@ -8,9 +9,7 @@ _LEVELS = 3
 """How often cells of 4 x 4 are joined: a ray then crosses a picture of 1920 pixels in 30 of the largest cells."""
 
 
-def surfaces(
-    draw: Draw, depth: Pixels, owner: str, solid: tuple[float, ...] | None = None, **limits: Drawn | float
-) -> Drawn:
+def surfaces(draw: Draw, depth: Pixels, owner: str, solid: tuple[float, ...] | None = None, **limits: Any) -> Drawn:
     """Every pixel as a small plane, and below them what cells of 4, 16 and 64 pixels hold.
 
     The owner's GLSL file has a function for each of the three draws, which calls the one of march.glsl. With `solid`,

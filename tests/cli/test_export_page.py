@@ -82,7 +82,7 @@ def test_controls_that_are_baked_say_so_at_their_place(cli, graphs, browser: Bro
 def test_a_page_says_where_its_device_places_corners_roughly(cli, browser: Browser, tmp_path: Path) -> None:
     assert cli("export", "clay_city", "-o", tmp_path / "page.html", "--size", "48x32").code == 0
     show(browser, tmp_path / "page.html")
-    said = "places corners of triangles in 16ths of a pixel" in browser.run(
+    said = "places corners of triangles to a 16th of a pixel" in browser.run(
         "document.getElementById('notes').innerText"
     )
     assert said and browser.run("halation.gl.getParameter(halation.gl.SUBPIXEL_BITS)") == 4

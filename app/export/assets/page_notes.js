@@ -21,6 +21,6 @@ function listNotes({notes, document: {held, plans}}, reader) {
     const bits = gl.getParameter(gl.SUBPIXEL_BITS);
     const hasMeshes = plans.some(variants => variants.some(plan => plan.passes.some(pass => pass.mesh)));
     const coarse = hasMeshes && bits < FINE_PARTS
-        ? [`this device places corners of triangles in ${2 ** bits}ths of a pixel: edges may look rougher`] : [];
+        ? [`this device places corners of triangles to a ${2 ** bits}th of a pixel: edges may look rougher`] : [];
     return [...notes.filter(note => !said.has(note)), ...reader.notes, ...coarse];
 }

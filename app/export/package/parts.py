@@ -52,7 +52,7 @@ class VariantSamples:
             lengths = np.array([[len(slot.numbers) for slot in row] for row in slots])
             if len(xs) > 2:
                 lines = rows[0] + (xs - xs[0])[:, None] / (xs[-1] - xs[0]) * (rows[-1] - rows[0])
-                is_changed = np.diff(rows, axis=0).any(axis=1)
+                is_changed = np.asarray(np.diff(rows, axis=0).any(axis=1))
                 is_unknown = is_changed & ~np.diff(lengths, axis=0).any(axis=1)
                 if np.abs(lines - rows).max(initial=0.0) > _ROUNDED and is_unknown.any():
                     jumps[name] = is_changed
