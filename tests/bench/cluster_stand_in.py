@@ -64,8 +64,9 @@ def open_waiting_cluster(workers: int) -> Iterator[Client]:
 class SingleFrames(assignments.AssignmentQueue):
     """Frames that are sent one by one, whatever they cost."""
 
-    def note_cost(self, seconds: Sequence[float]) -> None:
-        """Learn nothing."""
+    def note_cost(self, seconds: Sequence[float], *, is_first: bool = False) -> None:
+        """Learn nothing but that workers are there, which may have a frame more each."""
+        self.sends_ahead = True
 
 
 def run_job(client: Client, frames: int, seconds: float, *, singly: bool = False) -> tuple[float, float, int]:
