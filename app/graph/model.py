@@ -21,10 +21,6 @@ MAX_GROUP_DEPTH = 32
 of a group, and then this limit ends the expansion."""
 
 
-MAX_SIDE = 1 << 17
-"""Pixels on a side of a canvas: as many as a picture in a file may have (docs/security.md)."""
-
-
 class Port(Struct, frozen=True, order=True):
     """One end of a link, written `bloom.image`. The nodes `inputs` and `outputs` are the ends of the graph.
 

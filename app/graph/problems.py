@@ -11,13 +11,14 @@ from halation.nodes import ItemSet, Node, catalogue
 from msgspec.structs import replace
 
 from ..errors import GraphError
+from ..resources.picture import MAX_SIDE
 from ..resources.record import Record
 from ..resources.suggestions import limit_suggestions
 from . import rules
 from .enough import Enough
 from .evaluate_at_frame import animation_fault, find_expression_loops
 from .graph import Graph, Group, Item, find_setting, signature
-from .model import MAX_GROUP_DEPTH, MAX_SIDE, Input, Port, Unknown
+from .model import MAX_GROUP_DEPTH, Input, Port, Unknown
 from .named_items import find_item_faults
 from .names import INPUTS, OUTPUTS, can_compare_all, did_you_mean, find_name_fault, name_fault, pick
 from .rules import Rule, Severity

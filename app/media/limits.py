@@ -8,12 +8,10 @@ from halation.nodes import Size
 
 from ..errors import InputError
 from ..resources.machine import machine_memory
+from ..resources.picture import MAX_SIDE
 
 LIMIT = "HALATION_MAX_PIXELS"
 """The environment variable that sets the largest number of pixels of a picture."""
-
-_LONGEST_SIDE = 1 << 17
-"""The longest side: four times the largest texture of today's GPUs (32768). A longer side is a damaged header."""
 
 _MOST_PIXELS = 1 << 28
 """16384 x 16384: 4 GiB as RGBA in 32-bit floats. It applies if nobody sets the limit."""
@@ -31,7 +29,7 @@ def check_size(path: str, size: Size) -> None:
     """Refuse a picture that is larger than allowed. Raises InputError."""
     setting = os.environ.get(LIMIT, "")
     most = int(setting) if setting.isascii() and setting.isdecimal() else _MOST_PIXELS
-    if not all(0 < side <= _LONGEST_SIDE for side in size) or size[0] * size[1] > most:
+    if not all(0 < side <= MAX_SIDE for side in size) or size[0] * size[1] > most:
         raise InputError(
             f"{path}: claims to be {size[0]}x{size[1]} pixels, more than can be read ({most:,} in all): if that is "
             f"right, set {LIMIT} to more"

@@ -13,6 +13,10 @@ MAX_OVERSCAN = 2.0
 """The largest overscan in heights of the frame. A picture of 16:9 then has eleven times the pixels of its frame, if
 somebody reads them all. Chosen by judgement: plates and renders are made with a tenth, rarely with a half."""
 
+MAX_SIDE = 1 << 17
+"""Pixels on the longest side of a picture or canvas (docs/security.md): four times the largest texture of today's GPUs
+(32768). A longer side in a file is a damaged header."""
+
 LARGE_PICTURE = 2**24
 """Pixels from which on a proxy of a file is made while it is read: in half floats they fill a quarter of the editor's
 first budget for pictures, 512 MiB. Chosen by judgement: with half as many, proxies of UHD pictures change a little."""

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import GraphError, UsageError
-from ..graph.model import MAX_SIDE
+from ..resources.picture import MAX_SIDE
 
 if TYPE_CHECKING:
     import numpy as np

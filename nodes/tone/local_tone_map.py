@@ -1,4 +1,4 @@
-from typing import Annotated
+from typing import Annotated, Any
 
 from .._declare import Doc, Draw, Drawn, Field, Filter, Image, Number, Pixels, ProxyNote, Slider, Trait, Vector
 
@@ -112,15 +112,9 @@ class LocalToneMap(Filter):
         )
         light = draw.point("local_tone_map_light", self.image, result=Vector(width=2), scene=scene)
         center = draw.blur(light, _SIGMA * self.size)
+        even: dict[str, Any] = {"scene": scene, "sharpness": self.sharpness, "threshold": self.threshold}
         area = draw.point(
-            "local_tone_map_start",
-            result=Vector(width=2),
-            light=light,
-            center=center,
-            scene=scene,
-            scale=1 / _RATIO,
-            sharpness=self.sharpness,
-            threshold=self.threshold,
+            "local_tone_map_start", result=Vector(width=2), light=light, center=center, scale=1 / _RATIO, **even
         )
         for index in range(_SCALES):
             scale = _RATIO**index
@@ -131,10 +125,8 @@ class LocalToneMap(Filter):
                 area=area,
                 center=center,
                 surround=surround,
-                scene=scene,
                 scale=scale,
-                sharpness=self.sharpness,
-                threshold=self.threshold,
+                **even,
             )
             center = surround
         return draw.point(

@@ -34,14 +34,14 @@ float local_tone_map_unevenness(float inner, float outer, vec3 scene, float scal
 
 // The mean of the area so far, and 1 while the area may grow. The paper's smallest area is about a pixel; with a larger
 // one, a pixel beside a lamp would be darkened by the light of the lamp, so the pixel alone is an area too.
-vec2 local_tone_map_start(vec2 light, vec2 center, vec3 scene, float scale, float sharpness, float threshold) {
+vec2 local_tone_map_start(vec2 light, vec2 center, float scale, vec3 scene, float sharpness, float threshold) {
     float own = local_tone_map_mean(light), inner = local_tone_map_mean(center);
     return local_tone_map_unevenness(own, inner, scene, scale, sharpness) < threshold ? vec2(inner, 1.0) : vec2(own, 0.0);
 }
 
 // An area may grow to this size if its surround has a similar mean.
 vec2 local_tone_map_grow(
-    vec2 area, vec2 center, vec2 surround, vec3 scene, float scale, float sharpness, float threshold
+    vec2 area, vec2 center, vec2 surround, float scale, vec3 scene, float sharpness, float threshold
 ) {
     float inner = local_tone_map_mean(center), outer = local_tone_map_mean(surround);
     float uneven = local_tone_map_unevenness(inner, outer, scene, scale, sharpness);
