@@ -16,6 +16,7 @@ from halation.color.display import to_display
 from halation.errors import UsageError
 from halation.media import TypedAttribute, read_info, read_layer, read_metadata, write_picture
 from halation.nodes import Kind
+from halation.resources.render_choices import Precision
 from halation.resources.sandbox import UNRESTRICTED
 
 Make = Callable[..., Path]
@@ -188,6 +189,28 @@ def test_opaque_pictures_have_no_alpha(tmp_path: Path, rng: Random) -> None:
     colors[..., 3] = 1.0
     write_picture(tmp_path / "a.png", {"image": colors}, kinds=IMAGE, sandbox=UNRESTRICTED)
     assert parts(tmp_path / "a.png")[0][0].nchannels == 3
+
+
+@pytest.mark.parametrize(
+    ("alpha", "precision", "count"),
+    [
+        (0.9995, "half", 3),
+        (0.9995, "float", 4),
+        (0.99, "half", 4),
+    ],
+)
+def test_alpha_stays_where_a_code_says_something(
+    tmp_path: Path, rng: Random, alpha: float, precision: Precision, count: int
+) -> None:
+    """A blur leaves 0.9995 of an alpha of 1 in half floats: of 255 codes that is all of them, of 65,535 it is not."""
+    colors = hdr(rng)
+    colors[..., 3] = 1.0
+    colors[3, 5, 3] = alpha
+    write_picture(tmp_path / "a.png", {"image": colors}, kinds=IMAGE, precision=precision, sandbox=UNRESTRICTED)
+    [(spec, pixels)] = parts(tmp_path / "a.png")
+    assert spec.nchannels == count
+    if count == 4:
+        assert pixels[3, 5, 3] == pytest.approx(alpha, abs=0.5 / 255)
 
 
 @pytest.mark.parametrize("name", ["a.jpg", "a.JPEG", "a.webp"])
@@ -372,6 +395,7 @@ def test_bytes_are_those_of_an_explicit_tag(tmp_path: Path, ending: str) -> None
         ("oiio:UnassociatedAlpha", 1),
         ("compression", {"png": "", "jpg": "jpeg:95", "tif": "zip"}[ending]),
         ("jpeg:subsampling", "4:4:4"),
+        ("png:compressionLevel", 4),
     ):
         spec.attribute(name, value)
     output = oiio.ImageOutput.create(ending)

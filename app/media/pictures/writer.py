@@ -46,6 +46,10 @@ _COMPRESSIONS = {
     "openexr": ("none", "rle", "zips", "zip", "piz", *_EXR_LOSSY),
     "tiff": ("none", "lzw", "zip", "packbits"),
 }
+_PNG_LEVEL = 4
+"""Of zlib's 1 to 9. Against its own choice, 6, photographs and screens take 0.3 to 0.75 of the processor time and are 3
+to 8 % larger, measured at 1632x1224, dithered. Level 5 takes 0.5 to 0.85, and they are 1 to 4 % larger."""
+
 _STORED = {"uint8": "uint8", "uint16": "uint16", "float32": "float"}
 
 
@@ -255,8 +259,8 @@ def _encode_picture(
 ) -> EncodedPart:
     """The picture of a format that holds no layers. Data keeps its numbers in all of them.
 
-    Alpha is left out where the format has none, and where it is 1 everywhere and says nothing. One channel is written
-    as gray in three: not all of these formats have pictures of one channel.
+    Alpha is left out where the format has none, and where its number is the largest everywhere and says nothing. One
+    channel is written as gray in three: not all of these formats have pictures of one channel.
     """
     if array.shape[2] < 3:
         array = array[..., :1].repeat(3, axis=2)
@@ -268,9 +272,13 @@ def _encode_picture(
         array = np.nan_to_num(np.maximum(light, 0.0), nan=0.0).astype(np.float32)
     else:
         array = encoding.to_codes(array, 16 if deep else 10 if format == "dpx" else 8, is_data=is_data, frame=frame)
+        if array.shape[2] == 4 and bool((array[..., 3] == np.iinfo(array.dtype).max).all()):
+            array = array[..., :3]  # a blurred alpha is 1 but for its last digits
     spec = oiio.ImageSpec(array.shape[1], array.shape[0], array.shape[2], _STORED[array.dtype.name])
     if format == "tiff":
         spec.attribute("compression", compression)
+    if format == "png":
+        spec.attribute("png:compressionLevel", _PNG_LEVEL)
     if format == "jpeg":
         spec.attribute("compression", "jpeg:95")
         spec.attribute("jpeg:subsampling", "4:4:4")
