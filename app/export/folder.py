@@ -20,7 +20,6 @@ READERS: Mapping[str, str] = MappingProxyType(
         "read_package.py": "read_package.py.txt",
         "package_values.py": "package_values.py.txt",
         "read_package.js": "read_package.js",
-        "package_values.js": "package_values.js",
         "README.md": "package_readme.md",
     }
 )

@@ -16,7 +16,7 @@ from .package import Package, assemble_package
 from .package.dialects import write_es300
 from .shipped_files import read_shipped_text
 
-SCRIPTS = ("package_values.js", "read_package.js", "page_notes.js", "page.js")
+SCRIPTS = ("read_package.js", "page_reader.js", "page_notes.js", "page.js")
 """The scripts of a page, each of which needs those before it."""
 
 _MODULE_WORDS = re.compile(r"^(export |import .*\n)", re.MULTILINE)

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import base64
+import re
 from collections.abc import Iterator
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from threading import Thread
 
 import numpy as np
 import OpenImageIO as oiio
 import pytest
 from browser import CHROMIUM, Browser
+from exr_files import read
 from halation.presets import paths
 from shown_pages import SIZE, compare, list_settings, place_corners_like, read_picture, show, take
 
@@ -137,3 +142,35 @@ def test_the_picture_before_is_shown_beside_it(browser: Browser, page: Path) -> 
     middle = both.shape[1] // 2
     np.testing.assert_allclose(both[:, :middle], before[:, :middle], atol=1.01)
     np.testing.assert_array_equal(both[:, middle:], after[:, middle:])
+
+
+class QuietFiles(SimpleHTTPRequestHandler):
+    """Serves a folder without a log."""
+
+    def log_message(self, format: str, *args: object) -> None:
+        pass
+
+
+@pytest.fixture
+def served(tmp_path: Path) -> Iterator[str]:
+    """The address of the folder `look`."""
+    with ThreadingHTTPServer(("127.0.0.1", 0), partial(QuietFiles, directory=tmp_path / "look")) as server:
+        Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_port}"
+        server.shutdown()
+
+
+@pytest.mark.parametrize("preset", ["soft_bloom", "agx_look"])
+def test_the_reader_in_javascript_gives_our_pixels(cli, browser: Browser, served: str, tmp_path: Path, preset) -> None:
+    """As the README of the folder runs it: with pyramids, and with a table of colors."""
+    folder, words = tmp_path / "look", ("--size", "160x90")
+    assert cli("export", preset, "--to", "glsl", "-o", folder, *words).code == 0
+    example = re.search(r"```html\n(.*?)```", (folder / "README.md").read_text(), re.DOTALL)
+    assert example
+    (folder / "run.html").write_text(f"<!doctype html>{example[1]}")
+    browser.open(f"{served}/run.html")
+    browser.wait_until("window.shown")
+    theirs = np.array(browser.run("[...shown.pixels]")).reshape(90, 160, 4)
+    assert cli("render", preset, "-o", tmp_path / "a.exr", "--precision", "float", *words).code == 0
+    ours = read(tmp_path / "a.exr")
+    assert np.abs(theirs[..., : ours.shape[2]] - ours).max() <= 2e-3 * np.abs(ours).max()

@@ -20,7 +20,7 @@ from halation.export import ExportOrder
 from halation.export.python.library import load_library
 from halation.export.python.script import export_script
 from halation.graph import OUTPUTS, Port
-from halation.nodes import Node, catalogue
+from halation.nodes import MASK, Node, catalogue
 from halation.presets import paths
 from halation.renderer import Renderer, RenderRequest, open_device
 from halation.resources.sandbox import UNRESTRICTED
@@ -76,7 +76,7 @@ def test_a_function_does_what_its_node_does(renderer, tmp_path: Path, id: str, t
         values = choose_values(node, random) if turn else {}
         values |= {"pattern": "bayer"} if id == "dither" and not turn else {}
         optional = [name for name, socket in node.inputs.items() if socket.optional]
-        linked = [name for name in optional if turn == DAILY[-1] and (name in known or node.has_mask)]
+        linked = [name for name in optional if turn == DAILY[-1] and (name in known or name == MASK)]
         graph = load_graph(tmp_path / f"{turn}.json", make_graph(file, node, values, tuple(linked)))
         for name, ours in render_outputs(graph, renderer, list(node.outputs)).items():
             script = tmp_path / f"{turn}_{name}.py"

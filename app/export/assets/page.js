@@ -30,6 +30,9 @@ void main() {
     light = vec4(mix(code.rgb / 12.92, bright, greaterThan(code.rgb, vec3(0.04045))) * code.a, code.a);
 }`;
 
+// Programs of the page beside those of the look.
+const OWN_PROGRAMS = {cover: COVER, present: {fragment: PRESENT}, decode: {fragment: DECODE}};
+
 async function inflate(text, stride) {
     const bytes = Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
     const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
@@ -67,8 +70,8 @@ class Page {
         const gl = this.canvas.getContext("webgl2", {alpha: false, antialias: false, preserveDrawingBuffer: true});
         if (!gl) throw new Error("this browser has no WebGL 2");
         this.gl = gl;
-        this.reader = new PackageReader(gl, this.package, this.content.programs, number => this.blobs[number]);
-        this.content.programs.cover = COVER;
+        const programs = Object.assign(this.content.programs, OWN_PROGRAMS);
+        this.reader = new PageReader(gl, this.package, programs, number => this.blobs[number]);
         if (this.sheet) this.replaceMain();
         const {surfaces, output} = this.package.plans[0][0];
         [this.canvas.width, this.canvas.height] = this.size = surfaces[output].size;
@@ -125,36 +128,16 @@ class Page {
 
     // The picture as codes of a screen.
     view(picture, name) {
-        const gl = this.gl, reader = this.reader, display = this.package.display;
-        const target = this.makeCodes(name, picture.size);
-        reader.bind(reader.use(display.program), [picture], display.tables);
-        reader.cover([target]);
+        const target = this.reader.makeCodes(name, picture.size);
+        this.reader.draw(this.package.display, [picture], [target]);
         return target;
     }
 
-    // A texture of codes, in which pixels are interpolated.
-    makeCodes(name, size) {
-        const gl = this.gl;
-        return this.reader.remember(`${name} ${size}`, () => {
-            const texture = gl.createTexture();
-            gl.bindTexture(gl.TEXTURE_2D, texture);
-            gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, ...size, 0, gl.RGBA, gl.UNSIGNED_BYTE, null);
-            this.reader.setSampling(gl.TEXTURE_2D, true);
-            return Object.assign(texture, {size});
-        });
-    }
-
     present() {
-        const gl = this.gl, reader = this.reader;
+        const reader = this.reader, uniforms = [["room", this.size], ["wipe", [this.wipe]]];
         let before = this.shown;
         if (this.wipe > 0 && this.compared >= 0) before = this.view(reader.source(this.compared), "before");
-        const linked = reader.use("present", {fragment: PRESENT});
-        reader.bind(linked, [this.shown, before]);
-        reader.setUniform(linked, "room", this.size);
-        reader.setUniform(linked, "wipe", [this.wipe]);
-        gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-        gl.viewport(0, 0, ...this.size);
-        gl.drawArrays(gl.TRIANGLES, 0, 3);
+        reader.draw({program: "present"}, [this.shown, before], [], uniforms);
     }
 
     // --- controls ------------------------------------------------------------------------------------------------
@@ -333,19 +316,18 @@ class Page {
     // Puts the picture of the visitor in the place of the main input.
     replaceMain() {
         const gl = this.gl, reader = this.reader, {size, format, number} = this.main;
-        const codes = this.makeCodes("own codes", size);
+        const codes = reader.makeCodes("own codes", size);
         const light = reader.remember("own light", () => reader.makeTexture(size, format.replace("16f", "32f")));
         gl.bindTexture(gl.TEXTURE_2D, codes);
         gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, this.sheet);
-        reader.bind(reader.use("decode", {fragment: DECODE}), [codes]);
-        reader.cover([light]);
-        reader.replaced.set(number, light);
+        reader.draw({program: "decode"}, [codes], [light]);
+        reader.replace(number, light);
     }
 
     showOriginal() {
         this.closeCamera();
         this.sheet = null;
-        if (this.reader) this.reader.replaced.clear();
+        if (this.reader) this.reader.replace(this.main.number);
         $("back").hidden = true;
         this.restart();
     }

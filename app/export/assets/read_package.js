@@ -1,29 +1,42 @@
-// Runs a package that `halation export` wrote, on WebGL 2. All numbers and passes are in `document`; see the README of
-// the folder for their meaning. `loadBlob(n)` returns the bytes of blob n; `programs[n]` has `fragment` and `vertex`,
-// and `programs.cover` is the vertex shader of those that have none.
-import {Package} from "./package_values.js";
+// Runs a package that `halation export` wrote, on WebGL 2. `document` is `passes.json`; the README of its folder says
+// what it means. `loadBlob(n)` returns the bytes of blob n; `programs[n]` has the texts `fragment` and `vertex`, and
+// `programs.cover` is the vertex shader of those that have none. `render` returns a texture with the picture.
 
-const ATTRIBUTES = [["place", 3], ["normal", 3], ["uv", 2], ["albedo", 3], ["emission", 3], ["metal_rough", 2],
-                    ["object_material_moving", 3]];
-const STRIDE = 4 * ATTRIBUTES.reduce((sum, [, count]) => sum + count, 0), FIRST_TABLE = 16, WEIGHTS = 4096;
+const ATTRIBUTES = {place: 3, normal: 3, uv: 2, albedo: 3, emission: 3, metal_rough: 2, object_material_moving: 3};
+const SETTERS = {FLOAT: "fv", INT: "iv", UNSIGNED_INT: "uiv"}, SIZES = ["", "_VEC2", "_VEC3", "_VEC4"];
+const FIRST_TABLE = 16, WEIGHTS = 4096; // the unit of the first table, and the numbers of the block `Weights`
 
-export class PackageReader extends Package {
+// The row of numbers at x: between two rows, or the nearest one.
+function interpolate(x, at, rows, snap = at.length < 2) {
+    if (snap) return rows[at.reduce((best, place, k) => Math.abs(place - x) < Math.abs(at[best] - x) ? k : best, 0)];
+    const after = at.findIndex((place, k) => k > 0 && place >= x), k = after < 0 ? at.length - 1 : after;
+    const t = Math.min(Math.max((x - at[k - 1]) / (at[k] - at[k - 1]), 0), 1);
+    return rows[k - 1].map((a, n) => a + t * (rows[k][n] - a));
+}
+
+// The numbers of a slot at values of knobs: its base, the curve of each knob, and what two knobs change together.
+export function readSlot({base, curves = [], grids = [], mode, whole}, knobs) {
+    let numbers = base;
+    for (const {knob, at, values, snap} of curves) {
+        const row = interpolate(knobs[knob], at, values, snap);
+        numbers = numbers.map((number, n) =>
+            mode === "multiply" && base[n] !== 0 ? number * row[n] / base[n] : number + row[n] - base[n]);
+    }
+    for (const {knobs: [first, second], at, values} of grids) {
+        const row = interpolate(knobs[first], at[0], values.map(line => interpolate(knobs[second], at[1], line)));
+        numbers = numbers.map((number, n) => number + row[n]);
+    }
+    return whole ? numbers.map(Math.round) : numbers;
+}
+
+export class PackageReader {
     constructor(gl, document, programs, loadBlob) {
-        super(document, loadBlob);
-        Object.assign(this, {gl, programs});
-        this.canStoreFloats = !!gl.getExtension("EXT_color_buffer_float");
-        this.canFilterFloats = !!gl.getExtension("OES_texture_float_linear");
-        if (!this.canStoreFloats && !gl.getExtension("EXT_color_buffer_half_float"))
-            throw new Error("this browser cannot draw into pictures of floats, which the look needs");
-        this.notes = this.canStoreFloats ? [] : ["this device has half floats only: dark gradients may show steps"];
+        Object.assign(this, {gl, document, programs, loadBlob, history: {}, weights: gl.createBuffer()});
         this.made = new Map(); // textures, programs and meshes by name
-        this.weights = gl.createBuffer();
         this.setters = {[gl.SAMPLER_2D]: "uniform1iv", [gl.SAMPLER_3D]: "uniform1iv"};
-        for (const [type, letters] of [["FLOAT", "f"], ["INT", "i"], ["UNSIGNED_INT", "ui"]])
-            ["", "_VEC2", "_VEC3", "_VEC4"].forEach((length, at) => {
-                this.setters[gl[type + length]] = `uniform${at + 1}${letters}v`;
-            });
-        gl.disable(gl.DITHER);
+        for (const [scalar, end] of Object.entries(SETTERS))
+            SIZES.forEach((size, at) => { this.setters[gl[scalar + size]] = `uniform${at + 1}${end}`; });
+        this.extensions = ["EXT_color_buffer_float", "OES_texture_float_linear"].map(name => gl.getExtension(name));
         gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
     }
 
@@ -32,169 +45,156 @@ export class PackageReader extends Package {
         return this.made.get(name);
     }
 
-    forget(name) {
-        this.gl.deleteTexture(this.made.get(name) || null);
-        this.made.delete(name);
+    // The texture of the picture at values of knobs. Of a graph that remembers, frames follow each other.
+    render(values, frame, isFirst) {
+        const knobs = {...values, frame}, plan = this.plan(knobs, isFirst);
+        const surfaces = plan.surfaces.map(surface => this.surface(surface, knobs));
+        for (const pass of plan.passes) {
+            const [reads, writes] = [pass.textures, pass.targets].map(list => list.map(at => surfaces[at]));
+            const uniforms = Object.entries(pass.uniforms).map(([name, slot]) => [name, this.numbers(slot, knobs)]);
+            const weights = pass.weights === undefined ? [] : this.numbers(pass.weights, knobs);
+            this.draw(pass, reads, writes, uniforms, weights);
+        }
+        this.history = Object.fromEntries(Object.entries(plan.memories).map(([port, at]) => [port, surfaces[at]]));
+        return surfaces[plan.output];
     }
 
-    layout(channels, half) {
-        const gl = this.gl, internal = gl[["R", "RG", "RGB", "RGBA"][channels - 1] + (half ? "16F" : "32F")];
-        return [internal, [gl.RED, gl.RG, gl.RGB, gl.RGBA][channels - 1]];
+    // Variants are in the order of the axes, the last one changes fastest.
+    plan(knobs, isFirst, {axes, plans} = this.document) {
+        return plans[isFirst ? 0 : plans.length - 1][axes.reduce((index, {knob, edges}) =>
+            index * (edges.length + 1) + edges.filter(edge => knobs[knob] > edge).length, 0)];
     }
 
-    makeTexture(size, format, pixels = null) {
-        const gl = this.gl, texture = gl.createTexture();
-        const [internal, layout] = this.layout(format.length - 3, format.endsWith("16f") || !this.canStoreFloats);
+    numbers(slot, knobs) { return readSlot(this.document.slots[slot], knobs); }
+
+    // Surfaces of one slot share a texture, but for one that holds what the frame before has left.
+    surface({source, numbers, history, slot, format, size}, knobs, copy = 0) {
+        if (source !== undefined) return this.load(`source ${source}`, this.document.sources[source]);
+        if (numbers !== undefined) return this.numberTable(numbers, format, knobs);
+        if (history !== undefined) return this.history[history];
+        const texture = this.remember(`slot ${[slot, format, size, copy]}`, () => this.makeTexture(size, format));
+        const isKept = Object.values(this.history).includes(texture);
+        return isKept ? this.surface({slot, format, size}, knobs, copy + 1) : texture;
+    }
+
+    // The texture of a source or of a table of a color library.
+    load(name, {size, format, blob, linear}) {
+        const Numbers = format.endsWith("16f") ? Uint16Array : Float32Array;
+        return this.remember(name, () => this.makeTexture(size, format, new Numbers(this.loadBlob(blob)), linear));
+    }
+
+    // A table that a node made of its values: height, width, channels, and the numbers.
+    numberTable(slot, format, knobs) {
+        const [height, width, channels, ...numbers] = this.numbers(slot, knobs), components = format.length - 3;
+        const pixels = new Float32Array(width * height * components);
+        numbers.forEach((number, at) => { pixels[Math.floor(at / channels) * components + at % channels] = number; });
+        return this.makeTexture([width, height], format, pixels);
+    }
+
+    // A texture of two or three dimensions: the format is as GLSL spells it, such as rgba32f.
+    makeTexture(size, format, pixels = null, linear = false) {
+        const gl = this.gl, texture = gl.createTexture(), letters = format.slice(0, -3).toUpperCase();
+        const [target, upload] = size.length > 2 ? [gl.TEXTURE_3D, "texImage3D"] : [gl.TEXTURE_2D, "texImage2D"];
+        const layout = letters === "R" ? gl.RED : gl[letters];
         const type = pixels instanceof Uint16Array ? gl.HALF_FLOAT : gl.FLOAT;
-        gl.bindTexture(gl.TEXTURE_2D, texture);
-        gl.texImage2D(gl.TEXTURE_2D, 0, internal, ...size, 0, layout, type, pixels);
-        this.setSampling(gl.TEXTURE_2D, false);
-        return Object.assign(texture, {size});
+        gl.bindTexture(target, texture);
+        gl[upload](target, 0, gl[format.toUpperCase()], ...size, 0, layout, type, pixels);
+        for (const side of ["S", "T", "R"]) gl.texParameteri(target, gl[`TEXTURE_WRAP_${side}`], gl.CLAMP_TO_EDGE);
+        for (const end of ["MIN", "MAG"])
+            gl.texParameteri(target, gl[`TEXTURE_${end}_FILTER`], linear ? gl.LINEAR : gl.NEAREST);
+        return Object.assign(texture, {size, target});
     }
 
-    setSampling(target, linear) {
-        const gl = this.gl;
-        for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER])
-            gl.texParameteri(target, name, linear ? gl.LINEAR : gl.NEAREST);
-        for (const name of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T, gl.TEXTURE_WRAP_R])
-            gl.texParameteri(target, name, gl.CLAMP_TO_EDGE);
-    }
-
-    // A table of a color library. Where floats cannot be interpolated, halves stand for them.
-    table({sampler, shape, linear, blob}) {
-        const gl = this.gl, [channels, ...size] = shape.slice().reverse(), isDeep = size.length === 3;
-        const target = isDeep ? gl.TEXTURE_3D : gl.TEXTURE_2D, upload = isDeep ? "texImage3D" : "texImage2D";
-        const texture = this.remember(`table ${sampler}`, () => {
-            const made = gl.createTexture(), pixels = new Float32Array(this.loadBlob(blob));
-            const [internal, layout] = this.layout(channels, linear && !this.canFilterFloats);
-            gl.bindTexture(target, made);
-            gl[upload](target, 0, internal, ...size, 0, layout, gl.FLOAT, pixels);
-            this.setSampling(target, linear);
-            return made;
-        });
-        return {target, texture};
-    }
-
-    // A copy that the next frame may read while it draws into the same slots.
-    copy(texture, format, name) {
-        const gl = this.gl, target = this.remember(name, () => this.makeTexture(texture.size, format));
-        this.drawInto([texture], () => {
-            gl.bindTexture(gl.TEXTURE_2D, target);
-            gl.copyTexSubImage2D(gl.TEXTURE_2D, 0, 0, 0, 0, 0, ...texture.size);
-        });
-        return target;
-    }
-
-    // Nobody asks yet how the programs come out, so the driver may compile many at once.
-    prepare(passes) { passes.forEach(pass => this.link(pass.program)); }
-
-    link(number, texts = this.programs[number]) {
+    // A program with functions that set its uniforms, by name.
+    program(number) {
         return this.remember(`program ${number}`, () => {
-            const gl = this.gl, program = gl.createProgram();
-            for (const [kind, text] of [[gl.VERTEX_SHADER, texts.vertex || this.programs.cover],
-                                        [gl.FRAGMENT_SHADER, texts.fragment]]) {
-                const shader = gl.createShader(kind);
-                gl.shaderSource(shader, text);
-                gl.compileShader(shader);
-                gl.attachShader(program, shader);
+            const gl = this.gl, program = this.link(number);
+            if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost())
+                throw new Error(`program ${number}: ${gl.getAttachedShaders(program).map(gl.getShaderInfoLog, gl)}`);
+            program.setters = {};
+            for (let at = gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS) - 1; at >= 0; --at) {
+                const {name, type} = gl.getActiveUniform(program, at), place = gl.getUniformLocation(program, name);
+                const set = type === gl.FLOAT_MAT3 ? numbers => gl.uniformMatrix3fv(place, false, numbers)
+                            : numbers => gl[this.setters[type]](place, numbers);
+                if (place) program.setters[name.replace("[0]", "")] = set; // members of the block `Weights` have none
             }
-            ATTRIBUTES.forEach(([name], place) => gl.bindAttribLocation(program, place, name));
-            gl.linkProgram(program);
-            return {program, uniforms: null};
+            return program;
         });
     }
 
-    use(number, texts) {
-        const gl = this.gl, linked = this.link(number, texts), program = linked.program;
-        if (!linked.uniforms && !gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost())
-            throw new Error(`program ${number}: ${gl.getAttachedShaders(program).map(gl.getShaderInfoLog, gl)}`);
-        const length = linked.uniforms ? 0 : gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS);
-        linked.uniforms ||= new Map(Array.from({length}, (_, at) => {
-            const {name, type} = gl.getActiveUniform(program, at);
-            return [name.replace("[0]", ""), {type, place: gl.getUniformLocation(program, name)}];
-        }));
-        gl.useProgram(program);
-        return linked;
-    }
-
-    setUniform({uniforms}, name, numbers) {
-        const gl = this.gl, {type, place = null} = uniforms.get(name) || {};
-        if (place === null) return;
-        if (type === gl.FLOAT_MAT3) gl.uniformMatrix3fv(place, false, numbers);
-        else gl[this.setters[type]](place, numbers);
+    link(number) {
+        const gl = this.gl, program = gl.createProgram(), {vertex, fragment} = this.programs[number];
+        [vertex || this.programs.cover, fragment].forEach((text, at) => {
+            const shader = gl.createShader(at === 0 ? gl.VERTEX_SHADER : gl.FRAGMENT_SHADER);
+            gl.shaderSource(shader, text);
+            gl.compileShader(shader);
+            gl.attachShader(program, shader);
+        });
+        Object.keys(ATTRIBUTES).forEach((name, place) => gl.bindAttribLocation(program, place, name));
+        gl.linkProgram(program);
+        return program;
     }
 
     // Textures are bound as t0, t1, ..., tables by the names of their samplers.
-    bind(linked, textures, tables = []) {
-        const gl = this.gl, all = textures.map((texture, at) => [at, `t${at}`, {target: gl.TEXTURE_2D, texture}]);
-        tables.forEach((record, at) => all.push([FIRST_TABLE + at, record.sampler, this.table(record)]));
-        for (const [unit, name, {target, texture}] of all) {
+    draw({program: number, tables = [], mesh}, reads, writes, uniforms = [], weights = []) {
+        const gl = this.gl, program = this.program(number), samplers = tables.map((table, at) =>
+            [FIRST_TABLE + at, table.sampler, this.load(`table ${table.sampler}`, table)]);
+        reads.forEach((texture, at) => samplers.push([at, `t${at}`, texture]));
+        gl.useProgram(program);
+        for (const [unit, name, texture] of samplers) {
             gl.activeTexture(gl.TEXTURE0 + unit);
-            gl.bindTexture(target, texture);
-            this.setUniform(linked, name, [unit]);
+            gl.bindTexture(texture.target, texture);
+            program.setters[name]?.([unit]);
         }
-        gl.activeTexture(gl.TEXTURE0);
-    }
-
-    draw({program, tables, mesh}, reads, writes, uniforms, weights) {
-        const gl = this.gl, linked = this.use(program);
-        this.bind(linked, reads, tables);
-        for (const [name, numbers] of uniforms) this.setUniform(linked, name, numbers);
-        if (weights) {
-            const block = new Float32Array(WEIGHTS);
-            block.set(weights);
-            gl.uniformBlockBinding(linked.program, gl.getUniformBlockIndex(linked.program, "Weights"), 0);
+        for (const [name, numbers] of uniforms) program.setters[name]?.(numbers);
+        if (weights.length) {
+            const block = Float32Array.from({length: WEIGHTS}, (_, at) => weights[at] || 0);
             gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, this.weights);
             gl.bufferData(gl.UNIFORM_BUFFER, block, gl.DYNAMIC_DRAW);
         }
-        if (mesh) this.drawMesh(writes, mesh); else this.cover(writes);
+        this.drawInto(writes, mesh);
     }
 
-    drawInto(targets, work) {
+    // One triangle over all pixels, or the triangles of a mesh with a depth buffer, over 0.
+    drawInto(targets, mesh) {
         const gl = this.gl, framebuffer = gl.createFramebuffer();
+        const places = targets.map((_, at) => gl.COLOR_ATTACHMENT0 + at);
         gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
-        targets.forEach((texture, at) =>
-            gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + at, gl.TEXTURE_2D, texture, 0));
-        gl.drawBuffers(targets.map((_, at) => gl.COLOR_ATTACHMENT0 + at));
+        places.forEach((place, at) => gl.framebufferTexture2D(gl.FRAMEBUFFER, place, gl.TEXTURE_2D, targets[at], 0));
+        gl.drawBuffers(places);
         gl.viewport(0, 0, ...targets[0].size);
-        work();
+        if (mesh) this.drawMesh(targets[0].size, mesh); else gl.drawArrays(gl.TRIANGLES, 0, 3);
         gl.deleteFramebuffer(framebuffer);
     }
 
-    // One triangle over all pixels.
-    cover(targets) { this.drawInto(targets, () => this.gl.drawArrays(this.gl.TRIANGLES, 0, 3)); }
-
-    // The triangles of a mesh with a depth buffer, over 0.
-    drawMesh(targets, {vertices, indices}) {
+    drawMesh(size, {vertices, indices}) {
         const gl = this.gl, depth = gl.createRenderbuffer();
         const {array, count} = this.remember(`mesh ${vertices}`, () => this.makeMesh(vertices, indices));
         gl.bindRenderbuffer(gl.RENDERBUFFER, depth);
-        gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT24, ...targets[0].size);
-        gl.bindVertexArray(array);
+        gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT24, ...size);
+        gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, depth);
         gl.enable(gl.DEPTH_TEST);
-        this.drawInto(targets, () => {
-            gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, depth);
-            gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-            gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_INT, 0);
-        });
-        gl.disable(gl.DEPTH_TEST);
+        gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+        gl.bindVertexArray(array);
+        gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_INT, 0);
         gl.bindVertexArray(null);
+        gl.disable(gl.DEPTH_TEST);
         gl.deleteRenderbuffer(depth);
     }
 
     makeMesh(vertices, indices) {
-        const gl = this.gl, array = gl.createVertexArray(), numbers = new Uint32Array(this.loadBlob(indices));
+        const gl = this.gl, array = gl.createVertexArray(), bytes = [vertices, indices].map(this.loadBlob);
         gl.bindVertexArray(array);
-        gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
-        gl.bufferData(gl.ARRAY_BUFFER, this.loadBlob(vertices), gl.STATIC_DRAW);
-        gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
-        gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, numbers, gl.STATIC_DRAW);
-        let offset = 0;
-        ATTRIBUTES.forEach(([, count], place) => {
-            gl.enableVertexAttribArray(place);
-            gl.vertexAttribPointer(place, count, gl.FLOAT, false, STRIDE, offset);
-            offset += 4 * count;
+        [gl.ARRAY_BUFFER, gl.ELEMENT_ARRAY_BUFFER].forEach((kind, at) => {
+            gl.bindBuffer(kind, gl.createBuffer());
+            gl.bufferData(kind, bytes[at], gl.STATIC_DRAW);
         });
-        return {array, count: numbers.length};
+        const lengths = Object.values(ATTRIBUTES), stride = 4 * lengths.reduce((sum, length) => sum + length);
+        lengths.reduce((offset, length, place) => {
+            gl.enableVertexAttribArray(place);
+            gl.vertexAttribPointer(place, length, gl.FLOAT, false, stride, offset);
+            return offset + 4 * length;
+        }, 0);
+        return {array, count: bytes[1].byteLength / 4};
     }
 }

@@ -132,6 +132,8 @@ class SharedParts:
             self._tables[table.sampler] = {
                 "sampler": table.sampler,
                 "shape": list(values.shape),
+                "size": list(values.shape[-2::-1]),
+                "format": f"{'rgba'[: values.shape[-1]]}32f",
                 "linear": table.linear,
                 "blob": self.add_blob(values.tobytes()),
             }

@@ -199,8 +199,8 @@ class CallWriter:
             elif name in settings[0]:
                 values = tuple(setting[name] for setting in settings)
                 arguments.append(f"{name}={self._write_value(path, node, parameter, values)}")
-            elif name in ("width", "height"):
-                at = ("width", "height").index(name)
+            elif name in _SIDES:
+                at = _SIDES.index(name) % 2
                 own = ("WIDTH", "HEIGHT")[at]
                 arguments.append(f"{name}={own if size[at] == self.outline.size[at] else size[at]}")
             else:
@@ -303,6 +303,9 @@ class CallWriter:
             ScriptCall((target,), "masked", (*arguments, *(["inverted=True"] if inverted else [])))
         )
 
+
+_SIDES = ("width", "height", "columns", "rows")
+"""Parameters that get the size of the picture: the last two for nodes with a width and a height of their own."""
 
 _PLAIN = FunctionParameter("", True, False)
 """A parameter that takes any picture."""

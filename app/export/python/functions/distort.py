@@ -356,3 +356,27 @@ def glass(
         total += response * bilinear(image, at + refracted(slope, thickness, index + 0.5 * place * dispersion), edge)
         whole += response
     return total / whole
+
+
+def heat_haze(
+    image: Array,
+    heat: Array | float,
+    amount: float,
+    size: float,
+    stretch: float,
+    rise: float,
+    change: float,
+    rate: float,
+    seed: int,
+    edge: Edge,
+    frame: int,
+) -> Array:
+    """Points move by two octaves of gradient noise (Perlin 2002), which rise and change from frame to frame."""
+    height, width = image.shape[:2]
+    at = grid(width, height)
+    place = (at + np.array([0.0, rise / rate * frame])) / (size, size * stretch)
+    place = np.concatenate([place, np.full_like(place[..., :1], change / rate * frame)], axis=-1)
+    endless = np.full(3, ENDLESS)
+    coarse = gradient_noise(place, np.array([seed, 0, 0]), endless)[..., :2]
+    fine = gradient_noise(place * (2.0, 2.0, 1.0), np.array([seed, 1, 0]), endless)[..., :2]
+    return bilinear(image, at + heat * amount * (2.0 * coarse + fine) / 3.0, edge)

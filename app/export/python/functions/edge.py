@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from math import ceil
+
 import numpy as np
+from scipy import ndimage
 
 from .blur import blurred
 from .pixels import Array, display_tone, join, largest, length, luminance_of, srgb_decode
@@ -182,3 +185,46 @@ def height_to_normal(height: Array, depth: float, kernel: str, green: str, edge:
     normal = np.concatenate([-depth * across, rise, np.ones_like(rise)], axis=-1)
     normal = normal / length(normal)
     return normal, join(0.5 + 0.5 * normal, np.ones_like(rise))
+
+
+def canny_ridges(across: Array, down: Array, low: float, high: float) -> tuple[Array, Array]:
+    """Pixels that are stronger than both neighbors across the edge, above each of two thresholds (Canny 1986)."""
+    strength = np.hypot(across, down)
+    padded = np.pad(strength[..., 0], 1)
+
+    def beside(x: int, y: int) -> Array:
+        return padded[1 + y : padded.shape[0] - 1 + y, 1 + x : padded.shape[1] - 1 + x][..., None]
+
+    slope = np.tan(np.pi / 8.0)
+    flat, upright = np.abs(down) < slope * np.abs(across), np.abs(across) < slope * np.abs(down)
+    falling = across * down >= 0.0
+    ways = [flat, ~flat & upright, ~flat & ~upright & falling, ~flat & ~upright & ~falling]
+    steps = [(1, 0), (0, 1), (1, 1), (-1, 1)]
+    before = np.select(ways, [beside(-x, -y) for x, y in steps])
+    after = np.select(ways, [beside(x, y) for x, y in steps])
+    diagonal = ~flat & ~upright
+    ridge = (strength > before) & (strength >= after) & ~(diagonal & (strength == after))
+    return ridge & (strength > low), ridge & (strength > high)
+
+
+def canny(
+    image: Array, sigma: float, low: float, high: float, reach: float, width: float, edge: Edge
+) -> tuple[Array, Array]:
+    """Edges as lines: ridges of the Sobel gradient above two thresholds, weak ones where they touch a strong one."""
+    step, softness, gain = spacing_of(width)
+    tone = blurred(display_tone(image), np.hypot(sigma, softness), edge)
+
+    def at(x: int, y: int) -> Array:
+        return shifted(tone, x * step, y * step, edge)
+
+    falling, rising = at(1, 1) - at(-1, -1), at(1, -1) - at(-1, 1)
+    across = gain / 4.0 * (2.0 * (at(1, 0) - at(-1, 0)) + falling + rising)
+    down = gain / 4.0 * (2.0 * (at(0, 1) - at(0, -1)) + falling - rising)
+    weak, strong = canny_ridges(across, down, min(low, high), max(low, high))
+    square = np.ones((3, 3, 1), bool)
+    if reach > 0.0:  # three pixels at a time
+        strong = ndimage.binary_dilation(strong, square, iterations=3 * ceil(reach / 3.0), mask=weak)
+    lines = np.where(strong, min(gain, 1.0), 0.0)
+    if step > 1:
+        lines = ndimage.maximum_filter(lines, size=(step, step, 1), mode="constant")
+    return join(lines * image[..., 3:], image[..., 3:]), lines

@@ -14,6 +14,7 @@ from .noises import (
     lattice_place,
     lattice_wrap,
     simplex_noise,
+    simplex_slope,
     value_noise,
     white_noise,
 )
@@ -185,3 +186,85 @@ def wave(
         "square": np.where(t < 0.5, 0.0, 1.0),
     }[profile]
     return as_image(value), value
+
+
+def brick_length(at: Array, period: float, mortar: float) -> Array:
+    """How much brick lies between 0 and `at`, along an axis with joints around multiples of the period."""
+    whole = np.floor(at / period)
+    return whole * (period - mortar) + np.clip(at - whole * period - 0.5 * mortar, 0.0, period - mortar)
+
+
+def brick(
+    width: float,
+    height: float,
+    mortar: float,
+    shift: float,
+    every: int,
+    first: Array,
+    second: Array,
+    joint: Array,
+    variety: float,
+    seed: int,
+    offset: tuple[float, float],
+    columns: int,
+    rows: int,
+) -> tuple[Array, Array, Array]:
+    """A wall with antialiased joints: the picture, how much of a pixel is brick, and a number of each brick."""
+    wide, high = max(width, 1e-2), max(height, 1e-2)
+    across, down = min(mortar, wide), min(mortar, high)
+    at = grid(columns, rows) - np.asarray(offset)
+    x, y = at[..., :1], at[..., 1:]
+
+    def moved(row: Array) -> Array:
+        return x - np.where((row % every >= every - 1) & (every > 1), shift * wide, 0.0)
+
+    value = np.zeros_like(x)
+    low, high_row = np.floor((y - 0.5) / high), np.floor((y + 0.5) / high)
+    for row, top, bottom in (  # a pixel lies in two rows at most
+        (low, y - 0.5, np.where(high_row > low, high_row * high, y + 0.5)),
+        (high_row, np.where(high_row > low, high_row * high, y + 0.5), y + 0.5),
+    ):
+        part = brick_length(bottom, high, down) - brick_length(top, high, down)
+        place = moved(row)
+        value += part * (brick_length(place + 0.5, wide, across) - brick_length(place - 0.5, wide, across))
+    value = np.clip(value, 0.0, 1.0)
+    row = np.floor(y / high)
+    cell = np.concatenate([np.floor(moved(row) / wide), row, np.zeros_like(row)], axis=-1)
+    random = hash3(cell, stream_of(seed, 0, 0))[..., :1]
+    color = mix(np.asarray(first), np.asarray(second), 0.5 + (random - 0.5) * variety)
+    return mix(np.asarray(joint), color, value), value, random
+
+
+def curl_noise(
+    size: float,
+    octaves: int,
+    lacunarity: float,
+    gain: float,
+    strength: float,
+    seed: int,
+    evolution: float,
+    offset: tuple[float, float],
+    period: tuple[float, float],
+    loop: float,
+    width: int,
+    height: int,
+) -> tuple[Array, Array]:
+    """A flow without sources: the derivatives of layers of simplex noise, turned by a quarter (Bridson et al. 2007).
+
+    The second result is the noise itself, along whose contour lines the flow runs.
+    """
+    size = np.maximum(size, 1e-3)
+    place = lattice_place(grid(width, height) - np.asarray(offset), size, period, evolution, loop)
+    tiles = np.array([period[0] / size, period[1] / size, loop])
+    flow, stream, part, density, steepest = 0.0, 0.0, 1.0, 1.0, 0.0
+    for octave in range(octaves):
+        cells = lattice_period(tiles, density, 6)
+        dense = lattice_density(tiles, density, cells)
+        random = stream_of(seed, octave, 0)
+        slope = simplex_slope(place * dense, random, cells)
+        flow = flow + part * np.stack([dense[1] * slope[..., 1], -dense[0] * slope[..., 0]], axis=-1)
+        stream = stream + part * simplex_noise(place * dense, random, cells)[..., :1]
+        steepest += part * max(density, *dense[:2])
+        part, density = part * gain, density * lacunarity
+    most = steepest * 3.44793  # the steepest slope of one layer in a plane of two axes
+    return np.asarray(flow * strength / most), np.asarray(stream * strength / most)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from math import ceil
+from math import ceil, remainder
 from typing import Literal
 
 import numpy as np
 
-from .blur import blurred
+from .blur import blurred, gaussian_blur
 from .color import curve_at
 from .pixels import Array, join, largest, luminance_of, mix, rgb, smoothstep
 from .places import Edge, bilinear, extended, grid
@@ -322,3 +322,40 @@ def film_halation(
         layers.append(sum(share * blurred(channel, sigma * way, edge) for sigma, share in mixture))
     glow = join(amount * rgb(color) * np.maximum(np.concatenate(layers, axis=-1), 0.0), image[..., 3:])
     return join(image[..., :3] + glow[..., :3], image[..., 3:]), glow
+
+
+def star_turned(image: Array, width: int, height: int, angle: float, edge: str) -> Array:
+    """The picture turned counterclockwise about its middle, at another size."""
+    rows, columns = image.shape[:2]
+    at = grid(width, height) - 0.5 * np.array([width, height])
+    cos, sin = np.cos(angle), np.sin(angle)
+    x, y = at[..., :1], at[..., 1:]
+    places = np.concatenate([0.5 * columns + cos * x - sin * y, 0.5 * rows + sin * x + cos * y], axis=-1)
+    return bilinear(image, places, edge)
+
+
+def star(
+    image: Array,
+    length: float,
+    angle: float,
+    intensity: float,
+    tint: Array,
+    threshold: float,
+    knee: float,
+    limit: float,
+    edge: Edge,
+) -> tuple[Array, Array]:
+    """A star with four points on bright light, and the star alone: Gaussians in two directions, added."""
+    light = bright_light(image, threshold, knee, limit)
+    height, width = image.shape[:2]
+    angle = remainder(angle, 0.5 * np.pi)
+    turned = abs(angle) > 1e-5
+    if turned:  # a frame that holds the turned picture, with a pixel around it
+        cos, sin = abs(np.cos(angle)), abs(np.sin(angle))
+        frame = ceil(width * cos + height * sin) + 2, ceil(width * sin + height * cos) + 2
+        light = star_turned(light, *frame, -angle, edge)
+    arms = 0.5 * (gaussian_blur(light, length, (1.0, 0.0), edge) + gaussian_blur(light, length, (0.0, 1.0), edge))
+    if turned:
+        arms = star_turned(arms, width, height, angle, edge)
+    glow = join(arms[..., :3] * rgb(tint), image[..., 3:])
+    return join(image[..., :3] + intensity * glow[..., :3], image[..., 3:]), glow

@@ -242,3 +242,25 @@ def depth_slice(
     away = np.where((depth > 0.0) & (depth < 1e9), depth, 1e10)
     mask = ramp(away - near, near_softness) * ramp(far - away, far_softness)
     return 1.0 - mask if invert else mask
+
+
+def fill_holes(matte: Array, turns: int) -> Array:
+    """Close the holes of a matte: each pixel gets the highest value on the lowest way out (Vincent 1993).
+
+    Ways are found along all rows from both ends, then along all columns, and so on, `turns` times.
+    """
+    low = np.clip(matte[..., 0], 0.0, 1.0)
+    filled = np.ones_like(low)
+    for _ in range(turns):
+        for axis in (1, 0):
+            most, arrived = np.maximum(low, filled), []
+            for step in (1, -1):
+                way = np.moveaxis(np.empty_like(low), axis, 0)
+                least, limit = (np.moveaxis(each, axis, 0)[::step] for each in (low, most))
+                coming = np.zeros(least.shape[1:])  # from outside of the picture
+                for at in range(len(least)):
+                    coming = np.clip(coming, least[at], limit[at])
+                    way[at] = coming
+                arrived.append(np.moveaxis(way[::step], 0, axis))
+            filled = np.minimum(*arrived)
+    return filled[..., None]

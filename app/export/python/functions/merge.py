@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from .pixels import Array, join, largest, length, luminance_of, mix, smallest, smoothstep, straight
+from .places import bilinear, grid
 
 
 def screen(b: Array, a: Array) -> Array:
@@ -213,3 +214,45 @@ def vector_math(a: Array, operation: str, b: Array, c: Array, factor: Array | fl
     u, v, w = (np.broadcast_to(vector, np.broadcast_shapes(vector.shape, (1, 1, 3))) for vector in (u, v, w))
     result = VECTOR_OPERATIONS[operation](u, v, w, factor)
     return result, dot(u, v), length(result)
+
+
+def stereo(left: Array, right: Array, format: str, swap: bool) -> Array:
+    """The pictures of two eyes in one: for red and cyan glasses (Dubois 2001), side by side, or row by row."""
+    first, second = (right, left) if swap else (left, right)
+    height, width = first.shape[:2]
+    if format == "interlaced":
+        return np.where(np.arange(height)[:, None, None] % 2 == 0, first, second)
+    if format in ("side by side", "top and bottom"):
+        axis = 0 if format == "side by side" else 1
+        at = grid(width, height)
+        middle = 0.5 * (width, height)[axis]
+        is_second = at[..., axis : axis + 1] > middle
+        at[..., axis] = 2.0 * np.where(is_second[..., 0], at[..., axis] - middle, at[..., axis])
+        return np.where(is_second, bilinear(second, at), bilinear(first, at))
+    if format == "dubois":
+        for_left = np.array([[0.456, 0.5, 0.176], [-0.04, -0.038, -0.016], [-0.015, -0.021, -0.005]])
+        for_right = np.array([[-0.043, -0.088, -0.002], [0.378, 0.734, -0.018], [-0.072, -0.113, 1.226]])
+        color = first[..., :3] @ for_left.T + second[..., :3] @ for_right.T
+    else:
+        red, cyan = first[..., :1], second[..., 1:3]
+        if format in ("half color anaglyph", "gray anaglyph"):
+            red = luminance_of(first)
+        if format == "gray anaglyph":
+            cyan = np.repeat(luminance_of(second), 2, axis=-1)
+        color = np.concatenate([red, cyan], axis=-1)
+    return join(color, np.maximum(first[..., 3:], second[..., 3:]))
+
+
+def select(
+    which: int,
+    a: Array | float = 0.0,
+    b: Array | float = 0.0,
+    c: Array | float = 0.0,
+    d: Array | float = 0.0,
+    e: Array | float = 0.0,
+    f: Array | float = 0.0,
+    g: Array | float = 0.0,
+    h: Array | float = 0.0,
+) -> Array:
+    """One of several pictures, by number."""
+    return np.asarray((a, b, c, d, e, f, g, h)[which - 1])

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 import numpy as np
 from scipy import ndimage
 
@@ -348,44 +346,3 @@ def kuwahara(image: Array, kind: str, radius: float, sharpness: float, smoothing
         return light_of_tones(kuwahara_classic(tones, int(np.ceil(radius - 0.5)), edge))
     tensor = blurred(structure(tones[..., :3], edge), smoothing, edge)
     return light_of_tones(kuwahara_sectors(tones, tensor, radius, sharpness, kind == "anisotropic", edge))
-
-
-def bayer(cell: Array, bits: int) -> Array:
-    """The threshold of a cell in the Bayer matrix (1973) with 2^bits cells on a side."""
-    rank = np.zeros_like(cell[..., :1])
-    for bit in range(bits):
-        x, y = cell[..., :1] >> bit & 1, cell[..., 1:] >> bit & 1
-        rank = 4 * rank + 2 * (x ^ y) + y
-    return (rank + 0.5) / 4.0**bits
-
-
-def dither(
-    image: Array,
-    pattern: Literal["bayer", "white"],
-    levels: Array | float,
-    space: str,
-    size: float,
-    colored: bool,
-    animate: bool,
-    frame: int,
-) -> Array:
-    """A few levels without banding: ceil(c (levels - 1) - threshold) / (levels - 1)."""
-    color, alpha = straight(image)
-    height, width = image.shape[:2]
-    steps = np.maximum(levels, 2.0) - 1.0
-    cell = np.floor(grid(width, height) / max(size, 1.0)).astype(np.int64)
-    cell = cell + (3 * frame * np.array([48, 36]) if animate else 0)  # steps of the R2 sequence (Roberts 2018)
-    channels = []
-    for channel in range(3):
-        part = channel if colored else 0
-        if pattern == "white":
-            whole = np.concatenate([cell, np.full_like(cell[..., :1], part)], axis=-1)
-            threshold = hash3(whole, np.zeros(3))[..., :1]
-        else:
-            threshold = bayer(cell + part * np.array([48, 36]), 3)
-        code = color[..., channel : channel + 1]
-        code = (srgb_encode(code) if space == "display" else code) * steps
-        near = np.abs(code - np.round(code)) < 1e-3  # at a level already, up to rounding
-        code = np.ceil(np.where(near, np.round(code), code) - threshold) / steps
-        channels.append(srgb_decode(code) if space == "display" else code)
-    return premultiplied(np.concatenate(channels, axis=-1), alpha)
