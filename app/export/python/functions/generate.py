@@ -268,3 +268,51 @@ def curl_noise(
         part, density = part * gain, density * lacunarity
     most = steepest * 3.44793  # the steepest slope of one layer in a plane of two axes
     return np.asarray(flow * strength / most), np.asarray(stream * strength / most)
+
+
+def gabor_noise(
+    wavelength: float,
+    radius: float,
+    angle: float,
+    spread: float,
+    waves: int,
+    contrast: float,
+    seed: int,
+    evolution: float,
+    offset: tuple[float, float],
+    period: tuple[float, float],
+    width: int,
+    height: int,
+) -> tuple[Array, Array]:
+    """Waves within Gaussians at random places (Lagae et al. 2009), equally many in each cell (Tavernier et al. 2019).
+
+    Cells are as large as a wave reaches, or a little larger, so that a whole number of them fits the period.
+    """
+    end = np.exp(-np.pi)  # the Gaussian at its radius, which is taken away so that waves end there
+    tiles = np.array(period)
+    tile = min((side for side in period if side > 0.0), default=np.inf)
+    reach = radius * max(wavelength, 1e-3)
+    turns, reach = radius * min(reach, tile) / reach, min(reach, tile)
+    counts = np.where(tiles > 0.0, np.maximum(np.floor(tiles / reach), 1.0), 1.0)
+    side = np.where(tiles > 0.0, tiles / (counts * reach), 1.0)
+    cells = np.append(np.where(tiles > 0.0, counts, ENDLESS), ENDLESS).astype(np.int64)
+    place = lattice_place(grid(width, height) - np.asarray(offset), reach, period, 0.0, 0.0)[..., :2] / side
+    place = lattice_inside(np.concatenate([place, np.zeros_like(place[..., :1])], axis=-1), cells)
+    corner = np.floor(place).astype(np.int64)
+    total = 0.0
+    for i in range(9):
+        beside = np.array([i % 3 - 1, i // 3 - 1, 0])
+        cell, away = lattice_wrap(corner + beside, cells), (place - corner - beside)[..., :2] * side
+        for wave in range(waves):
+            stream = stream_of(seed, wave, 3)
+            start, dice = hash3(cell, stream), hash3(cell + np.array([0, 0, 1]), stream)
+            p = away - start[..., :2] * side
+            square = (p * p).sum(axis=-1, keepdims=True)
+            way = angle + spread * (2.0 * dice[..., :1] - 1.0)
+            phase = start[..., 2:] + np.where(dice[..., 1:2] < 0.5, evolution % 1.0, -(evolution % 1.0))
+            crest = np.cos(2.0 * np.pi * (turns * (p[..., :1] * np.cos(way) + p[..., 1:] * np.sin(way)) + phase))
+            total = total + np.where(square < 1.0, (np.exp(-np.pi * square) - end) / (1.0 - end) * crest, 0.0)
+    # 0.461243: the integral of the squared window over a disc of radius 1
+    deviation = np.sqrt(waves * 0.461243 / (2.0 * side[0] * side[1]))
+    value = 0.5 + 0.5 * np.clip(contrast * np.asarray(total) / (3.0 * deviation), -1.0, 1.0)
+    return as_image(value), value
