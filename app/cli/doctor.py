@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import getpass
 import os
 import platform
 import re
 import shutil
 import tempfile
 from collections.abc import Iterator
+from contextlib import suppress
 from importlib import metadata
 from pathlib import Path
 from typing import Literal
@@ -32,6 +34,9 @@ _LITTLE_DISK = 1 << 30
 
 _LITTLE_MEMORY = 2 << 30
 """Bytes. The largest presets need about 1 GB in 4K, and pictures are decoded and encoded beside them."""
+_USERS = ("home", "Users", "media")
+"""Folders in which each user has one with their name."""
+
 _EXTRAS = (
     ("video", "av", "videos cannot be read or written"),
     ("denoise", "pyoidn", "the node denoise cannot work"),
@@ -68,7 +73,36 @@ def doctor(as_json: AsJson = False) -> int:
 
 
 def examine_machine() -> Iterator[MachineCheck]:
-    """All checks, one after the other. A thing that cannot be examined is a fault of its own."""
+    """All checks, one after the other. No sentence names the user: reports of bugs are public."""
+    for check in _examine_everything():
+        yield msgspec.structs.replace(check, sentence=hide_users(check.sentence))
+
+
+def hide_users(sentence: str) -> str:
+    """A sentence with ~ for the home folders of the user, and ... for the names of users in other paths."""
+    for home in sorted(list_homes(), key=len, reverse=True):
+        sentence = re.sub(rf"(?<![\w.-]){re.escape(home)}(?![\w.-])", "~", sentence)
+    return re.sub(rf"([/\\](?:{'|'.join(_USERS)})[/\\])[^/\\\s]+", r"\1...", sentence)
+
+
+def list_homes() -> set[str]:
+    """The home folders of the user as paths may spell them: that of the environment, and that of the account.
+
+    The two may differ, such as after `su` or in a job of a farm.
+    """
+    names = ["~"]
+    with suppress(KeyError, OSError, ImportError):  # an account without an entry, as containers may have
+        names.append(f"~{getpass.getuser()}")
+    homes: set[Path] = set()
+    for name in names:
+        with suppress(RuntimeError):  # a user that the system does not know
+            home = Path(name).expanduser()
+            homes |= {home, home.resolve()}
+    return {spelling for home in homes if home != home.parent for spelling in (str(home), home.as_posix())}
+
+
+def _examine_everything() -> Iterator[MachineCheck]:
+    """What was found. A thing that cannot be examined is a fault of its own."""
     yield MachineCheck(
         "halation", "ok", f"{VERSION}, Python {platform.python_version()}, {platform.platform(terse=True)}"
     )
@@ -149,12 +183,12 @@ def _examine_folders() -> Iterator[MachineCheck]:
     yield _examine_folder("own presets", own)
     for folder in shared:
         if not folder.is_dir():
-            yield MachineCheck("shared presets", "note", f"{_shorten(folder)} does not exist: see HALATION_PATH")
+            yield MachineCheck("shared presets", "note", f"{folder.as_posix()} does not exist: see HALATION_PATH")
 
 
 def _examine_folder(topic: str, folder: Path) -> MachineCheck:
     nearest = next(parent for parent in (folder, *folder.parents) if parent.exists())
-    name = _shorten(folder)
+    name = folder.as_posix()
     if not nearest.is_dir() or not os.access(nearest, os.W_OK):
         return MachineCheck(topic, "fault", f"{name} cannot be written: change its permissions")
     free = shutil.disk_usage(nearest).free
@@ -202,7 +236,7 @@ def _examine_color() -> MachineCheck:
         spaces = len(manager.config.getColorSpaceNames())
     except HalationError as fault:
         return MachineCheck("color", "fault", f"{fault}; correct or unset OCIO")
-    name = _shorten(Path(config)) if config else "the built-in config"
+    name = Path(config).as_posix() if config else "the built-in config"
     return MachineCheck("color", "ok", f"{name}, {spaces} color spaces")
 
 
@@ -216,11 +250,3 @@ def _examine_plugins() -> Iterator[MachineCheck]:
     loaded = [f"{plugin.package} {plugin.version}" for plugin in plugins() if not plugin.fault]
     if loaded or not refused_plugins:
         yield MachineCheck("plug-ins", "ok", ", ".join(loaded) or "none")
-
-
-def _shorten(path: Path) -> str:
-    """A path with ~ for the home folder."""
-    try:
-        return f"~/{path.relative_to(Path.home()).as_posix()}"
-    except (ValueError, RuntimeError):
-        return path.as_posix()

@@ -43,6 +43,37 @@ def test_paths_do_not_name_the_user(cli, home):
     assert str(home) not in result.out and "~/" in result.out
 
 
+def test_no_sentence_names_a_user(cli, home, monkeypatch, tmp_path_factory):
+    """The home of the account counts too, where the environment names another one, and so do paths inside faults."""
+    account = tmp_path_factory.mktemp("anna")
+    (account / "scratch").mkdir()
+    monkeypatch.setattr(doctor.Path, "expanduser", lambda path: home if str(path) == "~" else account)
+    monkeypatch.setenv("TMPDIR", str(account / "scratch"))
+    monkeypatch.setattr(doctor.tempfile, "tempdir", None)
+    monkeypatch.setenv("OCIO", f"{account}/config.ocio")
+    monkeypatch.setenv("HALATION_PATH", "/home/bertha/presets")
+    report = cli("doctor").out
+    assert str(account) not in report and str(home) not in report and "bertha" not in report
+    topics = states(cli)
+    assert topics["temporary files"][1].startswith("~/scratch, ") and "~/config.ocio" in topics["color"][1]
+    assert topics["shared presets"][1].startswith("/home/.../presets ")
+
+
+@pytest.mark.parametrize(
+    ("sentence", "shown"),
+    [
+        ("{home}/a.json and {home}", "~/a.json and ~"),
+        ("{home}ward/a.json", "{home}ward/a.json"),
+        ("/srv{home}/a.json", "/srv{home}/a.json"),
+        (r"C:\Users\carla\a.json: missing", r"C:\Users\...\a.json: missing"),
+        ("/run/media/dora/disk/a.json", "/run/media/.../disk/a.json"),
+        ("/usr/lib/a.so", "/usr/lib/a.so"),
+    ],
+)
+def test_what_of_a_path_is_hidden(home, sentence, shown):
+    assert doctor.hide_users(sentence.format(home=home)) == shown.format(home=home)
+
+
 def test_a_missing_package_is_named(cli, monkeypatch):
     def find(name: str, found=metadata.version) -> str:
         if name in ("rich", "av"):
