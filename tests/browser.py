@@ -94,6 +94,10 @@ class Browser:
         self._call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=scale,
                    mobile=is_phone)  # fmt: skip
 
+    def prefer_scheme(self, scheme: str) -> None:
+        """Open pages as for a user who likes the `light` or the `dark` scheme better."""
+        self._call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
+
     def take_picture(self, path: Path) -> None:
         """Write what the window shows as PNG."""
         path.write_bytes(base64.b64decode(self._call("Page.captureScreenshot")["data"]))

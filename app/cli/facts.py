@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import math
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
 
 if TYPE_CHECKING:
@@ -83,14 +84,14 @@ def node_facts(node: type[Node]) -> dict[str, Any]:
     }
 
 
-def plan_facts(node: type[Node]) -> dict[str, Any]:
-    """The passes that a node compiles to at its defaults, with what each writes."""
+def plan_facts(node: type[Node], values: Mapping[str, Any] = MappingProxyType({})) -> dict[str, Any]:
+    """The passes that a node compiles to, at its defaults but for `values`, with what each writes."""
     from .. import compiler
     from .specimen import FULL_HD, drawable_outputs, plan_node
 
     if not drawable_outputs(node):
         return {"size": list(FULL_HD), "passes": [], "peak_bytes": 0}
-    plan: dict[str, Any] = compiler.plan_as_json(plan_node(node, FULL_HD))
+    plan: dict[str, Any] = compiler.plan_as_json(plan_node(node, FULL_HD, values=values))
     surfaces = plan["surfaces"]
     passes = [
         {

@@ -75,12 +75,16 @@ def drawable_outputs(node: type[Node]) -> tuple[str, ...]:
     return tuple(name for name, output in node.outputs.items() if not output.socket.kind.is_planned)
 
 
-def plan_node(node: type[Node], size: Size, target: Target = NULL) -> Plan:
-    """Plan all outputs of a node at its defaults, with inputs of this size. Needs no OpenGL.
+def plan_node(
+    node: type[Node], size: Size, target: Target = NULL, values: Mapping[str, Any] = MappingProxyType({})
+) -> Plan:
+    """Plan all outputs of a node, at its defaults but for `values`, with inputs of this size. Needs no OpenGL.
 
     Raises GraphError for a node that draws nothing.
     """
-    graph = Graph(settings=Settings(size, color=BUILT_IN)).add(NODE, node(**_path_values(node, "picture.exr")))
+    graph = Graph(settings=Settings(size, color=BUILT_IN)).add(
+        NODE, node(**_path_values(node, "picture.exr"), **values)
+    )
     pictures: dict[str, Picture] = {}
     for name, socket in node.inputs.items():
         if socket.optional:

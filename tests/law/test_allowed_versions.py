@@ -1,4 +1,4 @@
-"""Halation works with the lowest versions of its packages that pyproject.toml allows."""
+"""Halation works with the lowest and the newest versions of its packages that pyproject.toml allows."""
 
 from __future__ import annotations
 
@@ -40,19 +40,20 @@ def run(*words: str | Path, folder: Path) -> str:
     return ended.stdout
 
 
-@pytest.fixture(scope="module")
-def python(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The Python of an environment with the lowest versions, in which a copy of the tree is installed for editing."""
-    folder = tmp_path_factory.mktemp("lowest")
+@pytest.fixture(scope="module", params=["lowest-direct", "highest"])
+def python(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The Python of an environment with such versions, in which a copy of the tree is installed for editing."""
+    folder = tmp_path_factory.mktemp(request.param)
     tree = copy_tree(folder / "tree")
     extras = [word for extra in EXTRAS for word in ("--extra", extra)]
-    lowest = ("--resolution", "lowest-direct", "--python", sys.executable, "--quiet", "-o", folder / "lowest.txt")
-    run(UV, "pip", "compile", *lowest, *extras, "pyproject.toml", folder=tree)
+    versions = folder / "versions.txt"
+    wanted = ("--resolution", request.param, "--python", sys.executable, "--quiet", "-o", versions)
+    run(UV, "pip", "compile", *wanted, *extras, "pyproject.toml", folder=tree)
     run(UV, "venv", "--quiet", "--python", sys.executable, folder / "venv", folder=tree)
     python = folder / "venv/bin/python"
     pip = (UV, "pip", "install", "--quiet", "--python", python)
-    run(*pip, "-r", folder / "lowest.txt", folder=tree)
-    run(*pip, "--constraint", folder / "lowest.txt", *TOOLS, folder=tree)
+    run(*pip, "-r", versions, folder=tree)
+    run(*pip, "--constraint", versions, *TOOLS, folder=tree)
     run(*pip, "--no-deps", "--editable", ".", folder=tree)
     return python
 

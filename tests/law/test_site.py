@@ -12,12 +12,21 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from halation.nodes import built_in_nodes
+from browser import CHROMIUM, Browser
+from halation.nodes import Filter, Pointwise, built_in_nodes
 from halation.presets import paths
+from node_examples import EXAMPLES, UNCHANGED
+from site_check import (
+    FIRST_PAGE_LIMIT,
+    find_faults_in_html,
+    find_faults_on_screen,
+    read_pages,
+    serve,
+    weigh_first_page,
+)
 
 ROOT = Path(__file__).parents[2]
 SITE = ROOT / "tests/site"
-FIRST_PAGE_LIMIT = 1_000_000
 
 
 @pytest.fixture(scope="module")
@@ -61,10 +70,102 @@ def test_a_page_of_a_node_says_what_the_declaration_says(site: Path) -> None:
     assert 'id="soft_bloom"' in (site / "presets.html").read_text(encoding="utf-8")
     assert "<td>Nuke</td>" in page and "<td>Glow</td>" in page
     neutral = (site / "nodes/exposure.html").read_text(encoding="utf-8")
-    assert "leaves the picture as it is" in neutral and "draws nothing" not in neutral
+    assert "<code>stops</code> at 1.5" in neutral and 'alt="exposure with stops at 1.5"' in neutral
+    assert "With these values 1 pass, and" in neutral
+    assert "the processor decodes the file" in (site / "nodes/read_image.html").read_text(encoding="utf-8")
     assert re.search(r"\d+ passes, and \d+ MiB of textures at 1920 x 1080. It takes 80 ms with a device.", page)
     pictures = re.findall(r'src="../pictures/nodes/(\w+).jpg"', page)
     assert pictures == ["sample", "bloom", "photograph", "bloom_photograph", "bloom_strip"]
+
+
+def test_each_node_is_shown_with_values_that_change_something() -> None:
+    nodes = built_in_nodes()
+    assert not EXAMPLES.keys() - nodes.keys() and not UNCHANGED.keys() - nodes.keys() - EXAMPLES.keys()
+    for id, node in nodes.items():
+        example = node(**EXAMPLES.get(id, {}))
+        if isinstance(example, Pointwise | Filter):
+            assert example.identity() is None or id in UNCHANGED, id
+
+
+def test_pages_have_descriptions_of_their_own(site: Path) -> None:
+    pages = read_pages(site)
+    assert pages["how-to.html"].description.startswith("Each job is a few lines that work as they stand")
+    assert pages["nodes/bloom.html"].description == built_in_nodes()["bloom"].__doc__.partition("\n")[0]
+    descriptions = [page.description for page in pages.values()]
+    assert not [text for text in descriptions if not 10 <= len(text) <= 160 or re.search(r"[`*]|\]\(", text)]
+
+
+def test_the_html_of_the_site_has_no_fault(site: Path) -> None:
+    """Pictures that the fixture leaves out are missing, and nothing else is."""
+    faults = [fault for fault in find_faults_in_html(site, read_pages(site)) if ".jpg" not in fault.detail]
+    assert not faults
+
+
+FAULTS = {
+    "language": "<html>",
+    "title": "<title></title>",
+    "description": '<meta name="description" content="">',
+    "headings": "<h1>Another</h1>",
+    "network": '<img src="https://a.example/b.png" alt="b">',
+    "dead link": '<a href="missing.html">there</a>',
+}
+SOUND = {
+    "language": '<html lang="en">',
+    "title": "<title>A page</title>",
+    "description": '<meta name="description" content="About it">',
+    "headings": "<h1 id='top'>One</h1>",
+    "network": '<a href="https://a.example/">elsewhere</a>',
+    "dead link": '<a href="#top">up</a> <a href="other.html?a=b#place">there</a>',
+}
+
+
+@pytest.mark.parametrize("rule", ["", *FAULTS])
+def test_a_fault_in_html_is_found(tmp_path: Path, rule: str) -> None:
+    parts = {**SOUND, **({rule: FAULTS[rule]} if rule in ("language", "title", "description") else {})}
+    more = FAULTS.get(rule, "") if parts == SOUND else ""
+    (tmp_path / "page.html").write_text("".join(parts.values()) + more)
+    other = SOUND | {"title": "<title>Other</title>", "dead link": '<p id="place">'}
+    (tmp_path / "other.html").write_text("".join(other.values()))
+    faults = list(find_faults_in_html(tmp_path, read_pages(tmp_path)))
+    assert [(fault.page, fault.rule) for fault in faults] == ([("page.html", rule)] if rule else [])
+
+
+@pytest.mark.nightly  # Chromium takes a minute
+@pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
+def test_pages_are_accessible_and_load_fast(site: Path, tmp_path: Path) -> None:
+    """The first page, one with tables and code, and one of a node; the other ones are for `./dev site --check`."""
+    pytest.importorskip("axe_playwright_python", reason="axe-playwright-python is not installed")
+    bad = "<style>p { color: #999; background: #fff; width: 2000px }</style><p>dim</p><img src='a.png'><h4>deep</h4>"
+    (tmp_path / "bad.html").write_text(bad)
+    with Browser() as browser:
+        with serve(site) as address:
+            assert 300_000 < weigh_first_page(browser, address) <= FIRST_PAGE_LIMIT
+            pages = ("index.html", "editor.html", "nodes/bloom.html")
+            assert not list(find_faults_on_screen(browser, address, pages))
+        with serve(tmp_path) as address:
+            rules = {fault.rule for fault in find_faults_on_screen(browser, address, ["bad.html"])}
+    assert {"color-contrast", "image-alt", "html-has-lang", "document-title", "width"} <= rules
+
+
+@pytest.mark.nightly  # Chromium takes a quarter of a minute
+@pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
+def test_the_search_works_with_and_without_a_server(site: Path) -> None:
+    """A server sends the index of the search only when it is opened."""
+    with Browser() as browser, serve(site) as address:
+        for page in (f"{address}/index.html", site / "index.html"):
+            browser.open(page)
+            loaded = "performance.getEntriesByType('resource').filter(entry => /search_index/.test(entry.name)).length"
+            assert not isinstance(page, str) or browser.run(loaded) == 0
+            browser.run("document.querySelector('#__search').click()")
+            browser.run("document.querySelector('[data-md-component=search-query]').focus()")
+            browser.wait_until("!/^Init/.test(document.querySelector('.md-search-result__meta').textContent.trim())")
+            browser.run(
+                "(() => { const query = document.querySelector('[data-md-component=search-query]');"
+                "query.value = 'chromatic aberration';"
+                "for (const kind of ['input', 'keyup']) query.dispatchEvent(new Event(kind, { bubbles: true })) })()"
+            )
+            browser.wait_until("document.querySelector('.md-search-result__link')")
+            assert "chromatic" in browser.run("document.querySelector('.md-search-result__list').textContent").lower()
 
 
 def test_the_extra_for_the_manual_draws_every_node() -> None:
@@ -83,7 +184,7 @@ def test_nothing_is_loaded_from_elsewhere(site: Path) -> None:
     for name in ("404.html", "index.html", "nodes/bloom.html"):
         text = (site / name).read_text(encoding="utf-8")
         assert not re.findall(r'(?:src|<link rel="stylesheet" href)="https?:[^"]*', text)
-        (script,) = re.findall(r'src="([./]*assets/file_search.js)"', text)
+        (script,) = re.findall(r'src="([./]*assets/search_start.js)"', text)
         folder = site if script.startswith("/") else (site / name).parent
         assert (folder / script.lstrip("/")).is_file()
 

@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterator
 from html import escape
 from pathlib import Path
+from textwrap import shorten
 from typing import Any
 
 from halation.nodes import built_in_nodes
@@ -19,7 +20,10 @@ from preset_pages import picture_files, write_gallery
 
 ROOT = Path(__file__).parents[2]
 FRAME_SCRIPT = "https://unpkg.com/iframe-worker/shim"
-"""The one script that Material loads from elsewhere: `file_search.js` does its work."""
+"""The one script that Material loads from elsewhere: `search_start.js` does its work."""
+
+_DESCRIPTION = 160
+"""Characters of a description: about what search engines show."""
 
 MENUS = {"aa": "AA"}
 """Menus of nodes whose names are abbreviations."""
@@ -48,7 +52,7 @@ def on_files(files: Files, config: Any) -> Files:
 def write_files() -> Iterator[tuple[str, str | bytes]]:
     """The name and the content of every file that is generated."""
     yield "index.md", write_first_page()
-    for name in ("site.css", "file_search.js"):
+    for name in ("site.css", "search_start.js"):
         yield f"assets/{name}", Path(__file__).with_name(name).read_text(encoding="utf-8")
     users = find_users()
     nodes = built_in_nodes()
@@ -72,7 +76,18 @@ def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
     """Adapt a page: links to README.md lead to the first page, and lists are indented as MkDocs needs it."""
     text = re.sub(r"\]\((?:\.\./)+README\.md", "](index.md", markdown)
     text = re.sub(r"\]\((?:\.\./)+docs/", "](../", text) if "/" in page.file.src_uri else text
+    page.meta.setdefault("description", describe_page(text))
     return indent_lists(write_bars(text))
+
+
+def describe_page(markdown: str) -> str:
+    """The first sentences of a page, as search engines show them: what is no heading, table, picture or code."""
+    blocks = re.split(r"\n{2,}", re.sub(r"```.*?```|<!--.*?-->", "", markdown, flags=re.S))
+    texts = (
+        block for block in blocks if re.match(r"[\w*\[`(]", block) and not re.match(r"`\w+` in the menu|\[!", block)
+    )
+    text = re.sub(r"[`*\\]", "", re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", next(texts, "Halation")))
+    return shorten(text, _DESCRIPTION, placeholder=" ...")
 
 
 def write_bars(markdown: str) -> str:
@@ -86,15 +101,15 @@ def write_bars(markdown: str) -> str:
 
 def on_post_page(output: str, page: Any, **_: Any) -> str:
     """Replace the one script that Material loads from elsewhere by ours, so that the site needs no network."""
-    own = "../" * page.url.count("/") + "assets/file_search.js"
-    return remove_invalid_attributes(output.replace(FRAME_SCRIPT, own))
+    own = "../" * page.url.count("/") + "assets/search_start.js"
+    return name_parts(remove_invalid_attributes(output.replace(FRAME_SCRIPT, own)))
 
 
 def on_post_template(output_content: str, template_name: str, **_: Any) -> str:
     """The page of dead links is a template of Material alone. It names its files from the root of the site."""
     if not template_name.endswith(".html"):
         return output_content
-    return remove_invalid_attributes(output_content.replace(FRAME_SCRIPT, "/assets/file_search.js"))
+    return name_parts(remove_invalid_attributes(output_content.replace(FRAME_SCRIPT, "/assets/search_start.js")))
 
 
 def remove_invalid_attributes(html: str) -> str:
@@ -102,6 +117,19 @@ def remove_invalid_attributes(html: str) -> str:
     html = re.sub(r'(<input[^>]*) autocorrect="off"', r"\1", html)
     html = re.sub(r'(<input[^>]* type="(?:checkbox|radio)"[^>]*) autocomplete="off"', r"\1", html)
     return re.sub(r'(<label[^>]*) tabindex=""', r"\1", html)
+
+
+def name_parts(html: str) -> str:
+    """A page in which readers of screens and keyboards find all: Material leaves out what they need in three places.
+
+    The dialog of the search has a name, code that is wider than the window can be scrolled by keys, and the head of a
+    column that has no name is no head.
+    """
+    html = html.replace(
+        'data-md-component="search" role="dialog"', 'data-md-component="search" role="dialog" aria-label="Search"'
+    )
+    html = re.sub(r"(<pre>(?:<span></span>)?<code)(?=[ >])", r'\1 tabindex="0"', html)
+    return re.sub(r"<th([^>]*)></th>", r"<td\1></td>", html)
 
 
 def indent_lists(markdown: str) -> str:

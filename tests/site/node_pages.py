@@ -6,22 +6,25 @@ import math
 import tempfile
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 from halation import document
-from halation.cli.facts import plan_facts
+from halation.cli.facts import format_value, plan_facts
 from halation.cli.gallery import render_display_frames, render_specimen
 from halation.cli.manual import write_node_section
+from halation.cli.outcome import write_count
 from halation.cli.specimen import FULL_HD, NODE, drawable_outputs, sample_graph, show_on_sample
 from halation.graph import Graph, Port
 from halation.graph.graph import Group
 from halation.media.comparison.contact_sheet import make_sheet, write_sheet
-from halation.nodes import Node, Value
+from halation.nodes import Node, Reader, Value
 from halation.presets import paths, sample
 from halation.renderer import Renderer, RenderRequest, open_device
 from halation.renderer.bench import measure_graph
 from halation.resources.sandbox import UNRESTRICTED
 from menu_words import PROGRAMS
+from node_examples import EXAMPLES
 
 PHOTOGRAPH = Path(__file__).with_name("photograph.jpg")
 """A cup of coffee by Rachel Michetti, who has waived all rights (CC0), made smaller; scikit-image has it."""
@@ -39,9 +42,13 @@ def write_node_page(
     """The Markdown of the page of a node."""
     _, summary, *rest = write_node_section(node)
     blocks = [f"# {node.title}", f"`{node.id}` in the menu {node.category}", summary]
+    shown = _describe_example(node)
+    if shown:
+        blocks.append(f"At its defaults it changes nothing. The pictures show {shown}:")
     for ending, before in BEFORE.items():
         if (picture := _name_picture(node, ending)) in pictures:
-            after = f"![{node.title} at its defaults](../{picture}){{ .half }}"
+            words = shown.replace("`", "") if shown else "its defaults"
+            after = f"![{node.title} with {words}](../{picture}){{ .half }}"
             blocks.append(f"![Before](../{before}){{ .half }} {after}" if "image" in node.inputs else after)
     value = _find_main_value(node)
     if value and (strip := _name_picture(node, "_strip")) in pictures:
@@ -55,6 +62,27 @@ def write_node_page(
         links = ", ".join(f"[{name}](../presets.md#{name})" for name in presets)
         blocks += ["## Presets that use it", links]
     return "\n\n".join(blocks) + "\n"
+
+
+def _describe_example(node: type[Node]) -> str:
+    """The values with which its pictures are made, where they are not its defaults."""
+    return " and ".join(f"`{name}` at {_write_value(value)}" for name, value in EXAMPLES.get(node.id, {}).items())
+
+
+def _write_value(value: object) -> str:
+    """A value in a sentence; of named items how many there are."""
+    if isinstance(value, Mapping):
+        return write_count(len(cast("Mapping[str, object]", value)), "item")
+    text = format_value(value)
+    return f"({text})" if isinstance(value, tuple) else text
+
+
+def _make_example(node: type[Node]) -> Graph:
+    """The graph that shows a node on the sample, with values that change it."""
+    graph = show_on_sample(node, sample())
+    for name, value in EXAMPLES.get(node.id, {}).items():
+        graph = graph.set(Port(NODE, name), value)
+    return graph
 
 
 def _list_names(node: type[Node]) -> list[str]:
@@ -82,15 +110,18 @@ def _list_steps(value: Value) -> list[float]:
 
 def _describe_cost(node: type[Node]) -> str:
     """How many passes a node takes at its defaults, and the memory that they need."""
-    facts = plan_facts(node)
+    facts = plan_facts(node, EXAMPLES.get(node.id, {}))
     count = len(facts["passes"])
-    if not count and "image" in node.inputs:
-        return "At its defaults it leaves the picture as it is, and costs nothing."
-    if not count:
-        return "No pass of the graphics card."
     width, height = facts["size"]
-    passes = "1 pass" if count == 1 else f"{count} passes"
-    return f"At its defaults {passes}, and {facts['peak_bytes'] / 2**20:.0f} MiB of textures at {width} x {height}."
+    textures = f"{facts['peak_bytes'] / 2**20:.0f} MiB of textures at {width} x {height}"
+    if count:
+        passes = "1 pass" if count == 1 else f"{count} passes"
+        return f"{'With these values' if node.id in EXAMPLES else 'At its defaults'} {passes}, and {textures}."
+    if "image" in node.inputs:
+        return "At its defaults it leaves the picture as it is, and costs nothing."
+    if issubclass(node, Reader):
+        return f"No pass: the processor decodes the file, whose layers take {textures}."
+    return "No pass: the processor computes what it gives."
 
 
 def find_users() -> dict[str, list[str]]:
@@ -131,7 +162,7 @@ def render_pictures(nodes: Iterable[type[Node]]) -> Iterator[tuple[str, bytes]]:
 
 def _render_node(node: type[Node], renderer: Renderer) -> dict[str, np.ndarray]:
     """The pictures of a node by how their names end. A photograph has no other layers."""
-    graph = show_on_sample(node, sample())
+    graph = _make_example(node)
     pictures = {"": render_specimen(node, graph, renderer, sample())}
     if graph.inputs.keys() == {"beauty"}:
         photograph = {"beauty": str(PHOTOGRAPH)}
@@ -149,7 +180,7 @@ def measure_times(nodes: Iterable[type[Node]]) -> dict[str, str]:
     times: dict[str, str] = {}
     try:
         for node in filter(drawable_outputs, nodes):
-            benchmark = measure_graph(renderer, show_on_sample(node, sample()), RenderRequest(size=FULL_HD), (1,), 1, 1)
+            benchmark = measure_graph(renderer, _make_example(node), RenderRequest(size=FULL_HD), (1,), 1, 1)
             seconds = sum(timing.median for timing in benchmark.passes if NODE in timing.nodes)
             if seconds:
                 times[node.id] = f"It takes {1e3 * seconds:.0f} ms with {renderer.device.description}."

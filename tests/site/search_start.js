@@ -1,5 +1,25 @@
+// What Material leaves to others about the search. It looks for the name IFrameWorker.
+
+// The index of the search is larger than all else together, and most visitors never search: where a server sends it, it
+// is loaded when the search is opened, or when a page is opened from its results.
+{
+  const { open, send } = XMLHttpRequest.prototype;
+  const isOpen = new Promise(done => {
+    if (/[?&][qh]=/.test(location.search)) done();
+    document.addEventListener("focusin", event => event.target.matches("[data-md-component=search-query]") && done());
+  });
+  XMLHttpRequest.prototype.open = function (method, address, ...rest) {
+    this.isIndex = /\/search_index\.json$/.test(address);
+    return open.call(this, method, address, ...rest);
+  };
+  XMLHttpRequest.prototype.send = function (...content) {
+    if (this.isIndex) isOpen.then(() => send.apply(this, content));
+    else send.apply(this, content);
+  };
+}
+
 // Lets the search work where the manual is opened as a file: browsers start no workers there, so the script of the
-// worker runs in a hidden frame. Material looks for the name IFrameWorker.
+// worker runs in a hidden frame.
 if (location.protocol === "file:") {
   window.IFrameWorker = window.Worker = class extends EventTarget {
     constructor(url) {
