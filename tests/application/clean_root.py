@@ -24,7 +24,7 @@ from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
-from small_system import Array, Screen, SmallSystem, count_colors, wait_until
+from small_system import HOME, Array, Screen, SmallSystem, count_colors, wait_until
 
 ROOT = Path(__file__).parents[2]
 TOOLS = ("mmdebstrap", "bwrap", "Xvfb", "openbox", "xdotool")
@@ -99,7 +99,7 @@ class Trial:
     def examine(self) -> str:
         """halation doctor finds no fault, and names no folder of the user"""
         report = self._system.run("halation", "doctor")
-        assert "fault" not in report and "/home" not in report, report
+        assert "fault" not in report and HOME not in report, report
         return next(line for line in report.splitlines() if " opengl " in line).split("opengl")[1].strip()
 
     def render(self) -> str:
@@ -169,7 +169,7 @@ class Trial:
             self._screen.press("key", "ctrl+shift+s")
             time.sleep(2.0)
             self._screen.press("key", "ctrl+a")
-            self._screen.press("type", "--delay", "30", "/home/saved.json")
+            self._screen.press("type", "--delay", "30", f"{HOME}/saved.json")
             self._screen.press("key", "Return")
             saved = self._system.home / "saved.json"
             wait_until(saved.is_file, "nothing was saved")

@@ -22,6 +22,9 @@ PATIENCE = 600.0
 SHAPE = 1366, 768
 """Pixels of the display: that of a laptop."""
 
+HOME = "/home"
+"""The home folder of the user there."""
+
 Answer = TypeVar("Answer")
 Array = np.ndarray[Any, Any]
 
@@ -36,9 +39,9 @@ class SmallSystem:
     def list_words(self, *words: str, display: str = "") -> list[str]:
         """The command that runs `words` in the system. The home folder is the only one that can be written."""
         command = ["bwrap", "--ro-bind", str(self._root), "/", "--proc", "/proc", "--dev", "/dev", "--tmpfs", "/tmp"]
-        command += ["--tmpfs", "/run", "--bind", str(self.home), "/home", "--ro-bind", str(self._release), "/media"]
+        command += ["--tmpfs", "/run", "--bind", str(self.home), HOME, "--ro-bind", str(self._release), "/media"]
         command += ["--unshare-net", "--unshare-pid", "--unshare-ipc", "--die-with-parent", "--clearenv"]
-        command += ["--chdir", "/home", "--setenv", "HOME", "/home", "--setenv", "PATH", "/home:/usr/bin:/bin"]
+        command += ["--chdir", HOME, "--setenv", "HOME", HOME, "--setenv", "PATH", f"{HOME}:/usr/bin:/bin"]
         command += ["--setenv", "LANG", "C.UTF-8"]
         if display:
             command += ["--ro-bind", "/tmp/.X11-unix", "/tmp/.X11-unix", "--setenv", "DISPLAY", display]

@@ -51,12 +51,12 @@ def test_no_sentence_names_a_user(cli, home, monkeypatch, tmp_path_factory):
     monkeypatch.setenv("TMPDIR", str(account / "scratch"))
     monkeypatch.setattr(doctor.tempfile, "tempdir", None)
     monkeypatch.setenv("OCIO", f"{account}/config.ocio")
-    monkeypatch.setenv("HALATION_PATH", "/home/bertha/presets")
+    monkeypatch.setenv("HALATION_PATH", "/media/bertha/presets")
     report = cli("doctor").out
     assert str(account) not in report and str(home) not in report and "bertha" not in report
     topics = states(cli)
     assert topics["temporary files"][1].startswith("~/scratch, ") and "~/config.ocio" in topics["color"][1]
-    assert topics["shared presets"][1].startswith("/home/.../presets ")
+    assert topics["shared presets"][1].startswith("/media/.../presets ")
 
 
 @pytest.mark.parametrize(

@@ -184,7 +184,7 @@ def test_nothing_is_loaded_from_elsewhere(site: Path) -> None:
     for name in ("404.html", "index.html", "nodes/bloom.html"):
         text = (site / name).read_text(encoding="utf-8")
         assert not re.findall(r'(?:src|<link rel="stylesheet" href)="https?:[^"]*', text)
-        (script,) = re.findall(r'src="([./]*assets/search_start.js)"', text)
+        (script,) = re.findall(r'src="([./]*assets/site.js)"', text)
         folder = site if script.startswith("/") else (site / name).parent
         assert (folder / script.lstrip("/")).is_file()
 

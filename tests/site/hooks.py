@@ -20,7 +20,7 @@ from preset_pages import picture_files, write_gallery
 
 ROOT = Path(__file__).parents[2]
 FRAME_SCRIPT = "https://unpkg.com/iframe-worker/shim"
-"""The one script that Material loads from elsewhere: `search_start.js` does its work."""
+"""The one script that Material loads from elsewhere: `site.js` does its work."""
 
 _DESCRIPTION = 160
 """Characters of a description: about what search engines show."""
@@ -52,7 +52,7 @@ def on_files(files: Files, config: Any) -> Files:
 def write_files() -> Iterator[tuple[str, str | bytes]]:
     """The name and the content of every file that is generated."""
     yield "index.md", write_first_page()
-    for name in ("site.css", "search_start.js"):
+    for name in ("site.css", "site.js"):
         yield f"assets/{name}", Path(__file__).with_name(name).read_text(encoding="utf-8")
     users = find_users()
     nodes = built_in_nodes()
@@ -101,7 +101,7 @@ def write_bars(markdown: str) -> str:
 
 def on_post_page(output: str, page: Any, **_: Any) -> str:
     """Replace the one script that Material loads from elsewhere by ours, so that the site needs no network."""
-    own = "../" * page.url.count("/") + "assets/search_start.js"
+    own = "../" * page.url.count("/") + "assets/site.js"
     return name_parts(remove_invalid_attributes(output.replace(FRAME_SCRIPT, own)))
 
 
@@ -109,7 +109,7 @@ def on_post_template(output_content: str, template_name: str, **_: Any) -> str:
     """The page of dead links is a template of Material alone. It names its files from the root of the site."""
     if not template_name.endswith(".html"):
         return output_content
-    return name_parts(remove_invalid_attributes(output_content.replace(FRAME_SCRIPT, "/assets/search_start.js")))
+    return name_parts(remove_invalid_attributes(output_content.replace(FRAME_SCRIPT, "/assets/site.js")))
 
 
 def remove_invalid_attributes(html: str) -> str:
@@ -120,15 +120,10 @@ def remove_invalid_attributes(html: str) -> str:
 
 
 def name_parts(html: str) -> str:
-    """A page in which readers of screens and keyboards find all: Material leaves out what they need in three places.
-
-    The dialog of the search has a name, code that is wider than the window can be scrolled by keys, and the head of a
-    column that has no name is no head.
-    """
+    """A page in which readers of screens find all: the dialog of the search has a name, and an empty cell is no head."""
     html = html.replace(
         'data-md-component="search" role="dialog"', 'data-md-component="search" role="dialog" aria-label="Search"'
     )
-    html = re.sub(r"(<pre>(?:<span></span>)?<code)(?=[ >])", r'\1 tabindex="0"', html)
     return re.sub(r"<th([^>]*)></th>", r"<td\1></td>", html)
 
 

@@ -1,4 +1,13 @@
-// What Material leaves to others about the search. It looks for the name IFrameWorker.
+// What Material leaves to others.
+
+// Whatever can be scrolled can be scrolled by keys: Material makes no place for them in wide tables, nor in code where
+// fingers point. Its buttons beside code are no navigation.
+new MutationObserver(() => {
+  for (const place of document.querySelectorAll(".md-typeset__scrollwrap, pre > code")) {
+    if (place.tabIndex < 0) place.tabIndex = 0;
+  }
+  for (const place of document.querySelectorAll(".md-code__nav:not([role])")) place.role = "group";
+}).observe(document.documentElement, { subtree: true, childList: true, attributeFilter: ["tabindex"] });
 
 // The index of the search is larger than all else together, and most visitors never search: where a server sends it, it
 // is loaded when the search is opened, or when a page is opened from its results.
@@ -19,7 +28,7 @@
 }
 
 // Lets the search work where the manual is opened as a file: browsers start no workers there, so the script of the
-// worker runs in a hidden frame.
+// worker runs in a hidden frame. Material looks for the name IFrameWorker.
 if (location.protocol === "file:") {
   window.IFrameWorker = window.Worker = class extends EventTarget {
     constructor(url) {
