@@ -120,7 +120,7 @@ def remove_invalid_attributes(html: str) -> str:
 
 
 def name_parts(html: str) -> str:
-    """A page in which readers of screens find all: the dialog of the search has a name, and an empty cell is no head."""
+    """A page that can be read aloud: the dialog of the search has a name, and an empty cell of a table is no head."""
     html = html.replace(
         'data-md-component="search" role="dialog"', 'data-md-component="search" role="dialog" aria-label="Search"'
     )
