@@ -61,6 +61,7 @@ REASONS: dict[str, Cause] = {
     "vkBasalt or Xvfb is not installed": "tool",
     "uv is not installed": "tool",
     "Chromium is not installed": "tool",
+    "axe-playwright-python is not installed": "tool",
 }
 """How a reason begins, and what it is due to: the system, a case without anything to test, or a missing tool."""
 

@@ -81,8 +81,8 @@ class Trial:
 
     def check_system(self) -> str:
         """The system has no Python and no network"""
-        files = self._system.run("find", "/usr/bin", "/usr/lib", "-name", "*python3*").split()
-        assert not files, files
+        places = self._system.run("find", "/usr/bin", "/usr/lib", "-maxdepth", "1", "-name", "python*")
+        assert not places, places
         networks = self._system.run("cat", "/proc/net/dev").splitlines()[2:]
         assert [line.split(":")[0].strip() for line in networks] == ["lo"], networks
         return self._system.run("cat", "/etc/debian_version").strip()
@@ -116,7 +116,7 @@ class Trial:
             assert "_HALATION_COMPLETE" in answer, f"{shell}: {answer[-300:]}"
             (self._system.home / f"completion.{shell}").write_text(answer)
         bash = "source completion.bash; COMP_WORDS=(halation swe); COMP_CWORD=1; _halation_completion halation"
-        zsh = "compdef() { :; }; source completion.zsh; words=(halation swe); "
+        zsh = "compdef() { :; }; source completion.zsh; words=(halation swe); CURRENT=2; "
         zsh += (
             "compadd() { print -l -- $@; }; _arguments() { print -l -- $@; }; _describe() { print -l -- ${(P)2} $@; }; "
         )
@@ -225,7 +225,12 @@ def make_root(folder: Path, suite: str, *packages: str) -> Path:
     if not folder.is_dir():
         made = folder.with_name(f"{folder.name}.part")
         shutil.rmtree(made, ignore_errors=True)
-        words = ["mmdebstrap", "--quiet", "--variant=minbase", f"--include={','.join(packages)}", suite, str(made)]
+        # Debian's fish brings Python, for the pages of man alone. The user is one without rights.
+        hook = (
+            'rm -rf "$1"/usr/bin/python* "$1"/usr/lib/python*; echo "user:x:1000:1000::/home:/bin/sh" >>"$1"/etc/passwd'
+        )
+        words = ["mmdebstrap", "--quiet", "--variant=minbase", f"--include={','.join(packages)}"]
+        words += [f"--customize-hook={hook}", suite, str(made)]
         subprocess.run(words, check=True)
         made.rename(folder)
     return folder

@@ -40,6 +40,7 @@ class SmallSystem:
         """The command that runs `words` in the system. The home folder is the only one that can be written."""
         command = ["bwrap", "--ro-bind", str(self._root), "/", "--proc", "/proc", "--dev", "/dev", "--tmpfs", "/tmp"]
         command += ["--tmpfs", "/run", "--bind", str(self.home), HOME, "--ro-bind", str(self._release), "/media"]
+        command += ["--unshare-user", "--uid", "1000", "--gid", "1000"]
         command += ["--unshare-net", "--unshare-pid", "--unshare-ipc", "--die-with-parent", "--clearenv"]
         command += ["--chdir", HOME, "--setenv", "HOME", HOME, "--setenv", "PATH", f"{HOME}:/usr/bin:/bin"]
         command += ["--setenv", "LANG", "C.UTF-8"]
