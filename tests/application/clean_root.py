@@ -171,14 +171,14 @@ class Trial:
             self._screen.press("key", "ctrl+a")
             self._screen.press("type", "--delay", "30", f"{HOME}/saved.json")
             self._screen.press("key", "Return")
-            saved = self._system.home / "saved.json"
-            wait_until(saved.is_file, "nothing was saved")
+            graph = self._system.home / "saved.json"
+            wait_until(graph.is_file, "nothing was saved")
             self._screen.press("key", "ctrl+q")
             wait_until(lambda: process.poll() is not None, "the editor was never closed")
             assert process.returncode == 0, process.returncode
         self._system.run("halation", "render", "saved.json", "-o", "saved.png")
-        pictures = [_read_picture(self._system.home / name) for name in ("rendered.png", "saved.png")]
-        assert np.array_equal(*pictures)
+        rendered, saved = (_read_picture(self._system.home / name) for name in ("rendered.png", "saved.png"))
+        assert np.array_equal(rendered, saved)
         return f"window after {shown:.1f} s, editor.png; the same pixels"
 
     def say_what_is_missing(self) -> str:
@@ -256,7 +256,7 @@ def main() -> None:
         systems.append(SmallSystem(root, folder / f"home-{name}", programs[0].parent))
     failed = 0
     with ExitStack() as stack:
-        trial = Trial(programs[0], *systems, Screen(folder, stack), folder)
+        trial = Trial(programs[0], systems[0], systems[1], Screen(folder, stack), folder)
         for step in trial.list_steps():
             name = (step.__doc__ or "").strip()
             try:
