@@ -81,6 +81,17 @@ def test_the_reader_in_the_folder_gives_our_pixels(cli, graphs, folder: Path, tm
     assert np.abs(theirs - ours).max() <= 2e-3 * np.abs(ours).max()
 
 
+def test_on_one_driver_the_pixels_are_the_same_bits(cli, graphs, tmp_path: Path) -> None:
+    """Fragment passes with buffers of 32 bits are what a package has, and GLSL 4.1 says where rounding matters."""
+    graph = graphs(
+        **{**LOOK, "nodes": {**LOOK["nodes"], "tone": {"type": "saturation", "values": {"saturation": 1.4}}}}
+    )
+    assert cli("export", graph, "--to", "glsl", "-o", tmp_path / "look").code == 0
+    words = ("--precision", "float", "--form", "fragment")
+    assert cli("render", graph, "-o", tmp_path / "ours.exr", *words).code == 0
+    np.testing.assert_array_equal(read_package(tmp_path / "look"), read(tmp_path / "ours.exr"))
+
+
 def test_a_package_remembers_frames(cli, graphs, tmp_path: Path) -> None:
     """Feedback: the first frame has a plan of its own, and the fourth one is made of all before it."""
     nodes = {"back": {"type": "feedback"}}
