@@ -46,7 +46,7 @@ class Merge(Pointwise):
     aliases = (
         "over", "composite", "alpha over", "blend", "layer", "mix", "comp", "a over b", "blend mode", "blending mode",
         "layers", "channel merge", "transfer mode", "set matte", "z combine", "zmerge", "mix color", "apply mode",
-        "alpha matte", "track matte", "solid composite", "screen",
+        "alpha matte", "track matte", "solid composite", "screen", "clipping mask", "preserve transparency",
     )  # fmt: skip
 
     a = Image(doc="The foreground.")
@@ -62,6 +62,9 @@ class Merge(Pointwise):
     amount: Annotated[
         Fraction, Slider(0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="Mix of the background and the result.")
     ] = 1.0
+    clipped: Annotated[
+        bool, Doc("Show the foreground only on the background, whose alpha stays: a texture on a cut-out subject.")
+    ] = False
 
     def output_size(self, inputs: Mapping[str, Size], canvas: Size) -> Size:
         return inputs.get("b") or super().output_size(inputs, canvas)

@@ -46,26 +46,31 @@ vec3 merge_color(int mode, vec3 b, vec3 a) {
     return merge_with_luminance(b, luminance(a), ceiling);  // luminosity
 }
 
-vec4 merge_blend(int mode, vec4 a, vec4 b) {
+// `beyond` is how much of `a` shows where `b` does not cover.
+vec4 merge_blend(int mode, vec4 a, vec4 b, float beyond) {
     vec3 above = max(straight(a).rgb, 0.0), below = max(straight(b).rgb, 0.0);
     vec3 both = mode >= MODE_HUE ? merge_color(mode, below, above) : vec3(
         merge_channel(mode, below.r, above.r), merge_channel(mode, below.g, above.g),
         merge_channel(mode, below.b, above.b)
     );
-    vec3 rgb = a.rgb * (1.0 - b.a) + b.rgb * (1.0 - a.a) + a.a * b.a * both;
+    vec3 rgb = a.rgb * beyond + b.rgb * (1.0 - a.a) + a.a * b.a * both;
     return vec4(rgb, a.a + b.a - a.a * b.a);
 }
 
-vec4 merge(vec4 a, vec4 b, float mask, int mode, float amount) {
+// Clipped is what an opaque `b` gives, times its alpha. Written so that light where alpha is 0 stays.
+vec4 merge(vec4 a, vec4 b, float mask, int mode, float amount, bool clipped) {
     a = finite(a), b = finite(b);
+    float beyond = clipped ? 0.0 : 1.0 - b.a;
+    vec4 front = clipped ? a * b.a : a;
     vec4 merged = vec4(0.0);  // the mode clear
-    if (mode == MODE_OVER) merged = a + b * (1.0 - a.a);
-    if (mode == MODE_UNDER) merged = b + a * (1.0 - b.a);
+    if (mode == MODE_OVER) merged = front + b * (1.0 - a.a);
+    if (mode == MODE_UNDER) merged = b + a * beyond;
     if (mode == MODE_IN) merged = a * b.a;
-    if (mode == MODE_OUT) merged = a * (1.0 - b.a);
+    if (mode == MODE_OUT) merged = a * beyond;
     if (mode == MODE_ATOP) merged = a * b.a + b * (1.0 - a.a);
-    if (mode == MODE_XOR) merged = a * (1.0 - b.a) + b * (1.0 - a.a);
-    if (mode == MODE_PLUS) merged = vec4(a.rgb + b.rgb, min(a.a + b.a, 1.0));
-    if (mode >= MODE_MULTIPLY) merged = merge_blend(mode, a, b);
+    if (mode == MODE_XOR) merged = a * beyond + b * (1.0 - a.a);
+    if (mode == MODE_PLUS) merged = vec4(front.rgb + b.rgb, min(a.a + b.a, 1.0));
+    if (mode >= MODE_MULTIPLY) merged = merge_blend(mode, a, b, beyond);
+    if (clipped && (mode == MODE_PLUS || mode >= MODE_MULTIPLY)) merged.a = b.a;
     return finite(mix(b, merged, finite(mask) * finite(amount)));
 }

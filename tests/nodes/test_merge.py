@@ -138,6 +138,34 @@ def test_blends_as_the_w3c_writes_them(run, mode):
     assert error.max() < 2e-6
 
 
+@pytest.mark.parametrize("mode", [*FACTORS, "plus", *BLENDS, *OURS])
+def test_clipped_is_what_an_opaque_background_gives_times_its_alpha(run, mode):
+    """As a clipping mask, or an isolated group of the W3C whose first element is opaque, masked by the background."""
+    a, b = picture(4), picture(5)
+    (source, alpha_s), (backdrop, alpha_b) = straight(a), straight(b)
+    fa, fb = FACTORS.get(mode, lambda s, b: (1, 1 - s))(alpha_s, np.ones_like(alpha_b))
+    blended = BLENDS | OURS
+    if mode == "plus":
+        rgb, alpha = alpha_s * source + backdrop, np.ones_like(alpha_b)
+    elif mode in FACTORS:
+        rgb, alpha = alpha_s * fa * source + fb * backdrop, alpha_s * fa + fb
+    else:
+        rgb, alpha = alpha_s * blended[mode](backdrop, source) + (1 - alpha_s) * backdrop, np.ones_like(alpha_b)
+    expected = alpha_b * np.concatenate([rgb, alpha], -1)
+    error = np.abs(run(Merge(mode=mode, clipped=True), {"a": a, "b": b}) - expected) / np.maximum(1.0, np.abs(expected))
+    assert error.max() < 2e-6
+
+
+@pytest.mark.parametrize("mode", ["over", "atop", "plus", "multiply", "soft light", "screen"])
+def test_clipped_keeps_light_where_alpha_is_0(run, mode):
+    a, b = picture(6), picture(7)
+    b[4:8, 5:9, 3] = 0.0
+    out = run(Merge(mode=mode, clipped=True), {"a": a, "b": b})[4:8, 5:9]
+    assert (out[..., 3] == 0.0).all()
+    kept = b[4:8, 5:9, :3] * (1.0 if mode == "plus" else 1.0 - a[4:8, 5:9, 3:])
+    np.testing.assert_allclose(out[..., :3], kept, atol=1e-6)
+
+
 def test_every_mode_is_tested():
     assert set(get_args(Mode)) == {*FACTORS, *BLENDS, *OURS, "plus"}
 

@@ -95,36 +95,40 @@ def blend_colors(mode: str, b: Array, a: Array) -> Array:
     return with_luminance(b, luminance_of(a), ceiling)
 
 
-def blend(a: Array, b: Array, formula: Callable[[Array, Array], Array]) -> Array:
-    """a (1 - b.alpha) + b (1 - a.alpha) + a.alpha b.alpha blend(b, a)."""
+def blend(a: Array, b: Array, beyond: Array, formula: Callable[[Array, Array], Array]) -> Array:
+    """a (1 - b.alpha) + b (1 - a.alpha) + a.alpha b.alpha blend(b, a); `beyond` stands for 1 - b.alpha."""
     above, below = np.maximum(straight(a)[0], 0.0), np.maximum(straight(b)[0], 0.0)
     both = formula(below, above)
     cover_a, cover_b = a[..., 3:], b[..., 3:]
-    color = a[..., :3] * (1.0 - cover_b) + b[..., :3] * (1.0 - cover_a) + cover_a * cover_b * both
+    color = a[..., :3] * beyond + b[..., :3] * (1.0 - cover_a) + cover_a * cover_b * both
     return join(color, cover_a + cover_b - cover_a * cover_b)
 
 
 PORTER_DUFF = {
-    "over": lambda a, b: a + b * (1.0 - a[..., 3:]),
-    "under": lambda a, b: b + a * (1.0 - b[..., 3:]),
-    "in": lambda a, b: a * b[..., 3:],
-    "out": lambda a, b: a * (1.0 - b[..., 3:]),
-    "atop": lambda a, b: a * b[..., 3:] + b * (1.0 - a[..., 3:]),
-    "xor": lambda a, b: a * (1.0 - b[..., 3:]) + b * (1.0 - a[..., 3:]),
-    "clear": lambda a, b: 0.0 * (a + b),
-    "plus": lambda a, b: join(a[..., :3] + b[..., :3], np.minimum(a[..., 3:] + b[..., 3:], 1.0)),
+    "over": lambda a, b, front, beyond: front + b * (1.0 - a[..., 3:]),
+    "under": lambda a, b, front, beyond: b + a * beyond,
+    "in": lambda a, b, front, beyond: a * b[..., 3:],
+    "out": lambda a, b, front, beyond: a * beyond,
+    "atop": lambda a, b, front, beyond: a * b[..., 3:] + b * (1.0 - a[..., 3:]),
+    "xor": lambda a, b, front, beyond: a * beyond + b * (1.0 - a[..., 3:]),
+    "clear": lambda a, b, front, beyond: 0.0 * (a + b),
+    "plus": lambda a, b, front, beyond: join(front[..., :3] + b[..., :3], np.minimum(a[..., 3:] + b[..., 3:], 1.0)),
 }
-"""The operators of Porter and Duff (1984) for premultiplied pictures."""
+"""The operators of Porter and Duff (1984) for premultiplied pictures: `front` is the part of `a` that may show, `beyond`
+how much of it shows where `b` does not cover."""
 
 
-def merge(a: Array, b: Array, mask: Array | float, mode: str, amount: Array | float) -> Array:
-    """Combine the foreground `a` with the background `b`."""
+def merge(a: Array, b: Array, mask: Array | float, mode: str, amount: Array | float, clipped: bool) -> Array:
+    """Combine the foreground `a` with the background `b`, or show it only there."""
+    front, beyond = (a * b[..., 3:], np.zeros_like(b[..., 3:])) if clipped else (a, 1.0 - b[..., 3:])
     if mode in PORTER_DUFF:
-        merged = PORTER_DUFF[mode](a, b)
+        merged = PORTER_DUFF[mode](a, b, front, beyond)
     elif mode in BLENDS:
-        merged = blend(a, b, BLENDS[mode])
+        merged = blend(a, b, beyond, BLENDS[mode])
     else:
-        merged = blend(a, b, lambda below, above: blend_colors(mode, below, above))
+        merged = blend(a, b, beyond, lambda below, above: blend_colors(mode, below, above))
+    if clipped and (mode == "plus" or mode not in PORTER_DUFF):
+        merged = join(merged[..., :3], b[..., 3:])
     return mix(b, merged, mask * np.asarray(amount))
 
 
