@@ -114,8 +114,8 @@ PORTER_DUFF = {
     "clear": lambda a, b, front, beyond: 0.0 * (a + b),
     "plus": lambda a, b, front, beyond: join(front[..., :3] + b[..., :3], np.minimum(a[..., 3:] + b[..., 3:], 1.0)),
 }
-"""The operators of Porter and Duff (1984) for premultiplied pictures: `front` is the part of `a` that may show, `beyond`
-how much of it shows where `b` does not cover."""
+"""The operators of Porter and Duff (1984) for premultiplied pictures. `front` is the part of `a` that may show, and
+`beyond` how much of it shows where `b` does not cover."""
 
 
 def merge(a: Array, b: Array, mask: Array | float, mode: str, amount: Array | float, clipped: bool) -> Array:
