@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from ..errors import HalationError
 from . import parsing
 from .outcome import print_note
 
@@ -92,7 +93,7 @@ def has_independent_frames(job: RenderJob, graph: Graph, targets: Mapping[str, P
     """True if each frame can be rendered without the frames before it. Raises HalationError."""
     if graph.settings.preroll is not None:
         return True
-    plan = _plan_frame(job, graph, targets, {})
+    plan = _plan_frame(job, graph, targets, job.frames[0], {})
     for node in plan.remembering:
         print_note(f"one process renders all frames: node '{node}' needs the frame before each")
         break
@@ -104,22 +105,36 @@ def find_remembering_node(job: RenderJob, graph: Graph, targets: Mapping[str, Po
 
     Raises HalationError.
     """
-    from ..renderer.jobs.shared_results import has_stages
-
-    plan = _plan_frame(job, graph, targets, {})
+    plan = _plan_frame(job, graph, targets, job.frames[0], {})
     if not plan.memories or graph.settings.preroll is not None:
         return "", False
-    return plan.remembering[0], has_stages(_plan_frame(job, graph, targets, plan.memories))
+    frames = sorted(set(job.frames))
+    chosen = dict.fromkeys((job.frames[0], frames[len(frames) // 2], frames[-1]))
+    return plan.remembering[0], any(_has_stages(job, graph, targets, frame, plan.memories) for frame in chosen)
 
 
-def _plan_frame(job: RenderJob, graph: Graph, targets: Mapping[str, Port], memories: Mapping[Port, Memory]) -> Plan:
-    """The plan of the first frame of a job, where the frame before has stored some `memories`."""
+def _has_stages(
+    job: RenderJob, graph: Graph, targets: Mapping[str, Port], frame: int, memories: Mapping[Port, Memory]
+) -> bool:
+    """True if parts of a frame do not need the frame before. An effect that begins at 0 has no passes at first."""
+    from ..renderer.jobs.shared_results import has_stages
+
+    try:
+        return has_stages(_plan_frame(job, graph, targets, frame, memories))
+    except HalationError:  # who renders the frame says so
+        return False
+
+
+def _plan_frame(
+    job: RenderJob, graph: Graph, targets: Mapping[str, Port], frame: int, memories: Mapping[Port, Memory]
+) -> Plan:
+    """The plan of a frame of a job, where the frame before has stored some `memories`."""
     from ..compiler import Request, compile_graph
     from ..inputs.lazy_provider import LazyResourceProvider
 
     provider = LazyResourceProvider(job.sandbox)
     bindings = provider.bind(graph, job.inputs)
-    return compile_graph(graph, Request(targets, bindings, frame=job.frames[0], memories=memories), provider)
+    return compile_graph(graph, Request(targets, bindings, frame=frame, memories=memories), provider)
 
 
 def describe_costs(report: JobReport, device: str) -> dict[str, Any]:

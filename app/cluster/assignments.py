@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
 from msgspec import Struct
@@ -73,12 +73,12 @@ def split_suspects(frames: Sequence[int], before: Assignment, worker: str) -> li
 
 
 class AssignmentQueue:
-    """The frames that nobody renders yet."""
+    """The frames that nobody renders yet. Those of a chain need the ones before; `is_whole` if all are in one file."""
 
-    def __init__(self, frames: Sequence[int], *, is_chain: bool) -> None:
+    def __init__(self, frames: Sequence[int], *, is_chain: bool, is_whole: bool = False) -> None:
         self._fresh = deque(frames)
         self._repeated: deque[Assignment] = deque()
-        self._is_chain = is_chain
+        self._is_chain, self._is_whole = is_chain, is_whole
         self._cost = 0.0
         """Seconds of a frame: the mean of those that were measured, where newer ones count more."""
         self._is_sure = False
@@ -86,6 +86,12 @@ class AssignmentQueue:
         self.sends_ahead = False
         """True if a worker gets its next chunk while it renders one: not before a first chunk tells what frames cost.
         """
+        self._suspects_left, self._tried = 0, frozenset[str]()
+        """How many frames of a chain are still rendered one by one, and who has tried them, since a process ended."""
+        self._suspect: int | None = None
+        """The frame of a chain that is rendered alone; those after it wait."""
+        self._culprit: int | None = None
+        """The frame of a chain that was given up, until one after it is finished."""
 
     def __len__(self) -> int:
         return len(self._fresh) + sum(len(assignment.frames) for assignment in self._repeated)
@@ -110,6 +116,12 @@ class AssignmentQueue:
         """
         if self._repeated:
             return self._repeated.popleft()
+        if self._suspect is not None:
+            return None
+        if self._suspects_left:
+            self._suspects_left -= 1
+            self._suspect = self._fresh.popleft()
+            return Assignment((self._suspect,), 1, self._tried)
         if self._is_chain:
             count = len(self._fresh)
         else:
@@ -127,6 +139,8 @@ class AssignmentQueue:
         Returns the frames that have ended too many processes.
         """
         attempts, tried = before.attempts + 1, before.tried | {worker}
+        if self._is_chain and not self._is_whole:
+            return self._put_chain_back(frames, before, attempts, tried)
         if self._is_chain:
             if attempts >= MAX_ATTEMPTS:
                 return tuple(frames)
@@ -136,6 +150,40 @@ class AssignmentQueue:
             return tuple(frames)
         for assignment in split_suspects(frames, before, worker):
             self.put_back(assignment)
+        return ()
+
+    def finish(self, frames: Iterable[int]) -> None:
+        """Note frames that are finished or given up."""
+        for frame in frames:
+            self._suspect = None if frame == self._suspect else self._suspect
+            self._culprit = None if self._culprit is not None and frame > self._culprit else self._culprit
+
+    def explain_loss(self, frames: Collection[int], reason: str) -> str:
+        """Why frames are given up whose processes have ended for a `reason`: they may need another one."""
+        if self._culprit is None or self._culprit in frames:
+            return reason
+        return f"one worker renders all frames, and frame {self._culprit} cannot be rendered"
+
+    def _put_chain_back(
+        self, frames: Sequence[int], before: Assignment, attempts: int, tried: frozenset[str]
+    ) -> tuple[int, ...]:
+        """Try frames of a chain again: first those alone that the process may have worked on, one after the other.
+
+        The frames after one that ends all its processes are tried together: if not even one of them is finished, they
+        need that one.
+        """
+        if not frames:
+            return ()
+        if len(before.frames) == 1:
+            if attempts < MAX_ATTEMPTS:
+                self.put_back(Assignment(before.frames, attempts, tried))
+                return ()
+            self._culprit, self._suspects_left = before.frames[0], 0
+            return before.frames
+        if self._culprit is not None:
+            return tuple(frames)
+        self._fresh.extendleft(reversed(frames))
+        self._suspects_left, self._tried = min(SUSPECTS, len(frames)), tried
         return ()
 
 

@@ -315,19 +315,17 @@ class FrameCampaign:
             raise RenderError(f"--cluster {self._address}: a worker reports {name}: {fault}")
 
     def _give_up(self, frames: tuple[int, ...], reason: str) -> None:
-        facts = {"kind": "RenderError", "exit_code": 1}
-        self._note_faults({frame: {**facts, "message": reason} for frame in frames})
+        facts = {"kind": "RenderError", "exit_code": 1, "message": self._frames.explain_loss(frames, reason)}
+        self._note_faults(dict.fromkeys(frames, facts))
 
     def _note_faults(self, faults: Mapping[int, Mapping[str, Any]]) -> None:
         self.report.faults |= faults
-        if isinstance(self._frames, StagedAssignments):
-            self._frames.finish(faults)
+        self._frames.finish(faults)
         self._listener.report_progress(self.report, len(self._workers.usable))
 
     def _note_frames(self, seconds: Mapping[int, float]) -> None:
         self.report.seconds |= seconds
-        if isinstance(self._frames, StagedAssignments):
-            self._frames.finish(seconds)
+        self._frames.finish(seconds)
         self._listener.report_progress(self.report, len(self._workers.usable))
 
     # --- workers -----------------------------------------------------------------------------------------------------
@@ -394,5 +392,5 @@ class FrameCampaign:
 def _open_assignments(chunk: FrameChunk) -> AssignmentQueue | StagedAssignments:
     """The frames of a job, with their stages if it has some."""
     if chunk.stage is None:
-        return AssignmentQueue(chunk.parts, is_chain=chunk.is_chain)
+        return AssignmentQueue(chunk.parts, is_chain=chunk.is_chain, is_whole=bool(chunk.job.videos))
     return StagedAssignments(chunk.job.frames, chunk.stage.frame_before, chunk.stage.folder, checks=chunk.job.resume)

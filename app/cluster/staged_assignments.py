@@ -8,7 +8,7 @@ of the history is short, so that another worker can go on where one was killed, 
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 from msgspec.structs import replace
 
@@ -40,6 +40,8 @@ class StagedAssignments:
         self._is_history_busy, self._is_checked = False, not checks
         self._careful_until = first - 1
         """Up to here the history is rendered frame by frame, to find the one that ends its process."""
+        self._culprit: int | None = None
+        """The frame of the history that ends its process each time."""
         self._has_ahead, self._ahead_done = False, set[int]()
         self._ahead_first = self._ahead_next = first
         self._memories: dict[int, tuple[StoredMemory, ...]] = {}
@@ -84,7 +86,8 @@ class StagedAssignments:
             if attempts < MAX_ATTEMPTS:
                 self.put_back(replace(before, attempts=attempts, tried=tried))
                 return ()
-            return self.give_up_stage(before, min(before.frames))
+            self._culprit = min(before.frames)
+            return self.give_up_stage(before, self._culprit)
         if len(frames) == 1 and attempts >= MAX_ATTEMPTS:
             return tuple(frames)
         for assignment in split_suspects(frames, before, worker):
@@ -97,6 +100,12 @@ class StagedAssignments:
             self._unfinished.discard(frame)
             for number in (frame - 1, frame):
                 self._drop(number)
+
+    def explain_loss(self, frames: Collection[int], reason: str) -> str:
+        """Why frames are given up whose processes have ended for a `reason`: they may need another one."""
+        if self._culprit is None or min(frames, default=self._culprit) <= self._culprit:
+            return reason
+        return f"it needs what frame {self._culprit} stores: {reason}"
 
     def finish_stage(self, report: StageReport, assignment: Assignment) -> set[int]:
         """Take in what came of a stage; the frames that a check has found to be up to date."""

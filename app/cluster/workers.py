@@ -30,6 +30,8 @@ class WorkerRoster:
     def __init__(self, *, wants_gpu: bool) -> None:
         self._wants_gpu = wants_gpu
         self._facts: dict[str, Mapping[str, Any]] = {}
+        self._checked: set[str] = set()
+        """The workers whose version is known."""
         self._failures: dict[str, list[frozenset[int]]] = {}
         """The frames of each chunk with which a worker has failed, since it has last finished one."""
         self._bad_frames: set[int] = set()
@@ -41,13 +43,12 @@ class WorkerRoster:
         self.refusals: dict[str, str] = {}
 
     def update(self, facts_by_address: Mapping[str, Mapping[str, Any]]) -> list[str]:
-        """Take in what the scheduler says of its workers; those that are new."""
-        new = [address for address in facts_by_address if address not in self._facts]
+        """Take in what the scheduler says of its workers; those whose version is to be checked."""
         if facts_by_address.keys() != self._facts.keys():
             self.has_changed = self._changed_at > -math.inf
             self._changed_at = time.monotonic()
         self._facts = dict(facts_by_address)
-        return new
+        return [address for address in facts_by_address if address not in self._checked]
 
     def __contains__(self, address: str) -> bool:
         return address in self._facts
@@ -107,7 +108,11 @@ class WorkerRoster:
         return len(tried) < 2 or self.has_changed
 
     def check_versions(self, versions: Mapping[str, object]) -> Iterable[str]:
-        """Refuse workers with another version of Halation, or without it; their addresses."""
+        """Refuse workers with another version of Halation, or without it; their addresses.
+
+        One that could not be asked is asked again.
+        """
+        self._checked |= {address for address, version in versions.items() if isinstance(version, str | ImportError)}
         for address, version in versions.items():
             if isinstance(version, ImportError):
                 self.refusals[address] = f"it has no Halation that takes frames: pip install 'halation=={VERSION}'"

@@ -32,6 +32,7 @@ _REMOVED_VARIABLES = (
     "GALLIVM_DEBUG",
     "GALLIVM_PERF",
     "DRI_PRIME",
+    "GLCONTEXT_DEVICE_INDEX",
 )
 _MESA = Path("/usr/share/glvnd/egl_vendor.d/50_mesa.json")
 

@@ -1,9 +1,10 @@
 """Renders shots again and again while a cluster is harmed at random, and compares all frames with one process.
 
-.venv/bin/python tests/cluster/campaign.py --runs 100 --seed 1
+.venv/bin/python tests/cluster/campaign.py --runs 100 --seed 1 -j 3
 
-Workers are killed (SIGKILL), the scheduler is started again, connections are closed, and one worker has a full disk.
-The graph of every second run has a memory, so that its workers share results.
+Workers are killed (SIGKILL), the scheduler is started again, connections of the sender and of some workers are closed,
+one worker has a full disk, and one frame ends each process that renders it. Three kinds of graphs take turns. A run
+depends on the seed and its number only: `--first 17 --runs 1` repeats one.
 """
 
 from __future__ import annotations
@@ -16,66 +17,161 @@ import subprocess
 import sys
 import tempfile
 import time
+import traceback
 from collections import Counter
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
+from queue import SimpleQueue
+
+from msgspec import Struct, field
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from farms import FULL, PYTHON, Farm, Proxy, customize, end_group, find_port, start_scheduler
+from farms import PYTHON, Farm, Proxy, end_group, find_port, list_written, start_scheduler
 
 FRAMES = 24
 WORKERS = 3
 HARMS = ("kill", "kill", "cut", "restart")
-GRAPHS = {
-    "free": {
-        "nodes": {"c": {"type": "noise"}, "blur": {"type": "gaussian_blur"}},
-        "links": {"blur.image": "c.out", "outputs.image": "blur.out"},
-    },
-    "memory": {
-        "nodes": {"c": {"type": "noise"}, "blur": {"type": "gaussian_blur"}, "trail": {"type": "feedback"}},
-        "links": {"trail.image": "c.out", "blur.image": "trail.out", "outputs.image": "blur.out"},
-    },
-}
+EARLY_HARMS = ("kill", "cut")
+"""What may happen before a job has begun: without a scheduler it is refused, with a sentence."""
+
+SECONDS = 600.0
+"""How long a job may take on a busy machine: a choice, many times what it takes on a quiet one."""
+
 SHARED = {
     "halation": 1,
     "outputs": {"image": {"type": "Image"}},
-    "animation": {"blur.sigma": {"keys": [{"frame": 1, "value": 0.0}, {"frame": 24, "value": 9.0}]}},
     "settings": {"size": [320, 180], "frames": [1, FRAMES]},
 }
+BLURRED = {"blur.sigma": {"keys": [{"frame": 1, "value": 0.0}, {"frame": FRAMES, "value": 9.0}]}}
+MOVING = {"c.evolution": {"keys": [{"frame": 1, "value": 0.0}, {"frame": FRAMES, "value": 6.0}]}}
+NOISE, BLUR, TRAIL = {"type": "noise"}, {"type": "gaussian_blur"}, {"type": "feedback"}
+GRAPHS = {
+    "free": {
+        "nodes": {"c": NOISE, "blur": BLUR},
+        "links": {"blur.image": "c.out", "outputs.image": "blur.out"},
+        "animation": BLURRED,
+    },
+    "stages": {
+        "nodes": {"c": NOISE, "paint": {"type": "kuwahara"}, "trail": TRAIL, "blur": BLUR},
+        "links": {
+            "paint.image": "c.out",
+            "trail.image": "paint.out",
+            "blur.image": "trail.out",
+            "outputs.image": "blur.out",
+        },
+        "animation": {**BLURRED, **MOVING},
+    },
+    "chain": {
+        "nodes": {"c": NOISE, "trail": TRAIL},
+        "links": {"trail.image": "c.out", "outputs.image": "trail.out"},
+        "animation": MOVING,
+    },
+}
+"""Frames by themselves, a memory whose results workers share, and one that is all of a frame, for one worker."""
+
+HARMED = """
+import errno, os, sys, time
+if "--chunks" in sys.orig_argv:
+    from halation.renderer.jobs import item_session
+    plan, reserve = item_session.ItemSession.plan_task, os.posix_fallocate
+    def plan_task(self, frame):
+        time.sleep(0.2)
+        with open(os.environ["CRASH_AT"]) as file:
+            if file.read() == str(frame):
+                os.kill(os.getpid(), 9)
+        return plan(self, frame)
+    def posix_fallocate(*words):
+        if os.path.exists(os.environ["IS_FULL"]):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        return reserve(*words)
+    item_session.ItemSession.plan_task, os.posix_fallocate = plan_task, posix_fallocate
+"""
+"""Loaded by each Python of a worker (`sitecustomize`): frames take a moment, one of them ends its process, and the disk
+is full while a file is there."""
+
+
+class Plan(Struct, frozen=True):
+    """What happens in a run."""
+
+    graph: str
+    has_full_disk: bool
+    crash_at: int
+    """The frame that ends its processes; 0 for none."""
+    seed: str
+    early: tuple[tuple[float, str], ...]
+    late: tuple[tuple[float, str], ...]
+    """Seconds to wait and what to do then: since the command is started, and since the first file is there."""
+
+
+class Ending(Struct):
+    """What came of a run. `fault` says what is wrong, "" for nothing."""
+
+    number: int
+    harms: list[str] = field(default_factory=list[str])
+    fault: str = ""
+    seconds: float = 0.0
+
+
+def plan_run(seed: int, number: int) -> Plan:
+    """What happens in a run of this number."""
+    draw = random.Random(f"{seed}.{number}")
+    has_full_disk, crashes = draw.random() < 0.5, draw.random() < 0.3
+    crash_at = draw.randint(3, FRAMES) if crashes else 0
+    early = [(draw.uniform(0.0, 3.0), draw.choice(EARLY_HARMS)) for _ in range(draw.random() < 0.3)]
+    late = [(draw.uniform(0.0, 3.0), draw.choice(HARMS)) for _ in range(draw.randint(1, 3))]
+    graph = tuple(GRAPHS)[number % len(GRAPHS)]
+    return Plan(graph, has_full_disk, crash_at, f"{seed}.{number}.harm", tuple(early), tuple(late))
 
 
 class HarmedFarm:
-    """A farm whose sender reaches the scheduler through a proxy."""
+    """A farm whose sender and some of whose workers reach the scheduler through a proxy, for one run at a time."""
 
-    def __init__(self, folder: Path, draw: random.Random) -> None:
-        port = find_port()
-        self._draw, self._port = draw, port
-        self._full = customize(folder / "full", FULL)
-        self.proxy = Proxy(port)
-        self.address = f"tcp://127.0.0.1:{self.proxy.port}"
-        self.farm = Farm(folder, f"tcp://127.0.0.1:{port}", start_scheduler(folder, port))
+    def __init__(self, folder: Path) -> None:
+        self._port = find_port()
+        self._proxy = Proxy(self._port)
+        self._direct, self.address = (f"tcp://127.0.0.1:{port}" for port in (self._port, self._proxy.port))
+        self._farm = Farm(folder, self._direct, start_scheduler(folder, self._port))
+        self._crash_at, self._marks = folder / "crash_at", dict[int, Path]()
+        self._draw = random.Random()
+        (folder / "sitecustomize.py").write_text(HARMED)
+
+    def prepare(self, plan: Plan) -> None:
+        """Have as many workers as needed, and a full disk and a crashing frame where a run wants them."""
+        self._draw = random.Random(plan.seed)
+        self._crash_at.write_text(str(plan.crash_at))
+        self.fill()
+        for mark in self._marks.values():
+            mark.unlink(missing_ok=True)
+        if plan.has_full_disk:
+            self._marks[self._draw.choice(self._farm.workers)].touch()
 
     def fill(self) -> None:
-        """Start workers that are missing: at most one of them has a full disk."""
-        for _ in range(WORKERS - len(self.farm.workers)):
-            self.farm.start_worker()
-
-    def start_full_worker(self) -> None:
-        """Start a worker that cannot write."""
-        self.farm.start_worker(**self._full)
+        """Start workers that are missing."""
+        for _ in range(WORKERS - len(self._farm.workers)):
+            self._farm.address = self._draw.choice((self._direct, self.address))
+            mark, folder = self._farm.folder / f"full{len(self._marks)}", self._farm.folder
+            variables = {"PYTHONPATH": str(folder), "CRASH_AT": str(self._crash_at), "IS_FULL": str(mark)}
+            self._marks[self._farm.start_worker(**variables)] = mark
 
     def harm(self, kind: str) -> None:
         """Do one thing that may not lose a frame."""
         if kind == "kill":
-            end_group(self.farm.workers.pop(self._draw.randrange(len(self.farm.workers))))
+            end_group(self._farm.workers.pop(self._draw.randrange(len(self._farm.workers))))
         elif kind == "cut":
-            self.proxy.cut()
+            self._proxy.cut()
         else:
-            for group in (self.farm.scheduler, *self.farm.workers):
+            for group in (self._farm.scheduler, *self._farm.workers):
                 end_group(group)
-            self.farm.workers.clear()
-            self.farm.scheduler = start_scheduler(self.farm.folder, self._port)
+            self._farm.workers.clear()
+            self._farm.scheduler = start_scheduler(self._farm.folder, self._port)
         self.fill()
+
+    def stop(self) -> None:
+        """End everything."""
+        self._farm.stop()
+        self._proxy.close()
 
 
 def render(folder: Path, *words: str) -> subprocess.Popen[str]:
@@ -87,68 +183,104 @@ def render(folder: Path, *words: str) -> subprocess.Popen[str]:
     )
 
 
-def read_all(folder: Path) -> list[bytes]:
-    """The bytes of all frames. A process that is killed leaves its temporary file, which a later render removes."""
-    return [path.read_bytes() for path in sorted(folder.glob("f.*.exr"))]
-
-
-def try_once(folder: Path, number: int, draw: random.Random) -> tuple[str, list[str]]:
-    """Render on a cluster that is harmed: what is wrong, or "", and what was done."""
-    name = tuple(GRAPHS)[number % len(GRAPHS)]
+def try_once(folder: Path, number: int, plan: Plan, harmed: HarmedFarm) -> Ending:
+    """Render on a cluster that is harmed."""
+    ending, started = Ending(number), time.monotonic()
     output = folder / f"run{number}"
     output.mkdir()
-    farm_folder = Path(tempfile.mkdtemp(prefix="farm", dir=folder))
-    harmed = HarmedFarm(farm_folder, draw)
-    harms: list[str] = []
     process: subprocess.Popen[str] | None = None
     try:
-        if draw.random() < 0.5:
-            harmed.start_full_worker()
-            harms.append("full disk")
-        harmed.fill()
-        process = render(folder, f"{name}.json", "-o", f"run{number}/f.####.exr", "--cluster", harmed.address)
-        while not any(output.iterdir()) and process.poll() is None:  # a job that has not begun is refused instead
+        harmed.prepare(plan)
+        ending.harms += ["full disk"] * plan.has_full_disk + ["crashing frame"] * bool(plan.crash_at)
+        words = ("-o", f"run{number}/f.####.exr", "--cluster", harmed.address)
+        process = render(folder, f"{plan.graph}.json", *words)
+        harm_in_turn(harmed, process, plan.early, ending)
+        while not any(output.iterdir()) and process.poll() is None:
             time.sleep(0.05)
-        for _ in range(draw.randint(1, 3)):
-            time.sleep(draw.uniform(0.0, 3.0))
-            if process.poll() is None:
-                harms.append(draw.choice(HARMS))
-                harmed.harm(harms[-1])
-        _, err = process.communicate(timeout=240)
+        harm_in_turn(harmed, process, plan.late, ending)
+        _, err = process.communicate(timeout=SECONDS)
+        ending.fault = find_fault(folder, number, plan, process.returncode, err)
     except subprocess.TimeoutExpired:
+        ending.fault = "it does not end"
+    except Exception:  # the run has a fault, and the others are tried
+        ending.fault = traceback.format_exc()
+    finally:
         if process is not None:
             process.kill()
-        return "it does not end", harms
-    finally:
-        harmed.farm.stop()
-        harmed.proxy.close()
-    if process.returncode:
-        return f"exit code {process.returncode}:\n{err}", harms
-    frames = read_all(output)
+    ending.seconds = round(time.monotonic() - started, 1)
+    return ending
+
+
+def harm_in_turn(
+    harmed: HarmedFarm, process: subprocess.Popen[str], harms: tuple[tuple[float, str], ...], ending: Ending
+) -> None:
+    """Do one thing after the other, while the job runs."""
+    for pause, kind in harms:
+        time.sleep(pause)
+        if process.poll() is None:
+            ending.harms.append(kind)
+            harmed.harm(kind)
+
+
+def find_fault(folder: Path, number: int, plan: Plan, code: int, err: str) -> str:
+    """What is wrong with the frames of a run and what its command has said, or ""."""
+    output = folder / f"run{number}"
+    if code != bool(plan.crash_at):
+        return f"exit code {code}:\n{err}"
+    if plan.crash_at and f"frame {plan.crash_at}: on 3 tries, the last on " not in err:
+        return f"frame {plan.crash_at} is not named:\n{err}"
+    wanted = [frame for frame in range(1, FRAMES + 1) if frame != plan.crash_at]
+    if list_written(output) != wanted:
+        return f"other frames than wanted are there: {list_written(output)}\n{err}"
+    for name in (f"f.{frame:04d}.exr" for frame in wanted):
+        if (output / name).read_bytes() != (folder / plan.graph / name).read_bytes():
+            return f"{name} differs\n{err}"
     left = [path.name for path in output.iterdir() if path.name.startswith(".halation-shared-")]
-    if frames != read_all(folder / name):
-        return f"{len(frames)} frames, of which some differ or are missing", harms
-    return f"{left} is left" if left else "", harms
+    return f"{left} is left" if left else ""
+
+
+def run_all(folder: Path, options: argparse.Namespace) -> Iterator[Ending]:
+    """Make all runs, some of them side by side, each side with a farm of its own that goes from run to run."""
+    farms = SimpleQueue[HarmedFarm]()
+    for _ in range(options.j):
+        farms.put(HarmedFarm(Path(tempfile.mkdtemp(prefix="farm", dir=folder))))
+
+    def run(number: int) -> Ending:
+        farm = farms.get()
+        try:
+            return try_once(folder, number, plan_run(options.seed, number), farm)
+        finally:
+            farms.put(farm)
+
+    try:
+        with ThreadPoolExecutor(options.j) as threads:
+            runs = [threads.submit(run, options.first + number) for number in range(options.runs)]
+            yield from (future.result() for future in as_completed(runs))
+    finally:
+        for _ in range(options.j):
+            farms.get().stop()
 
 
 def main() -> None:
     """Run as many times as the command line says."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--runs", type=int, default=100)
+    parser.add_argument("--first", type=int, default=0, help="the number of the first run")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("-j", type=int, default=1, help="runs side by side")
     options = parser.parse_args()
-    draw, faults, total = random.Random(options.seed), 0, Counter[str]()
+    faults, total = 0, Counter[str]()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         for graph, document in GRAPHS.items():
             (folder / f"{graph}.json").write_text(json.dumps({**SHARED, **document}))
             (folder / graph).mkdir()
-            assert render(folder, f"{graph}.json", "-o", f"{graph}/f.####.exr").wait(240) == 0
-        for number in range(options.runs):
-            fault, harms = try_once(folder, number, draw)
-            faults += bool(fault)
-            total.update(harms)
-            print(f"run {number} ({', '.join(harms)}): {fault or 'all frames are those of one process'}", flush=True)
+            assert render(folder, f"{graph}.json", "-o", f"{graph}/f.####.exr").wait(SECONDS) == 0
+        for ending in run_all(folder, options):
+            faults += bool(ending.fault)
+            total.update(ending.harms)
+            words = f"run {ending.number}, {ending.seconds} s ({', '.join(ending.harms)})"
+            print(f"{words}: {ending.fault or 'all frames are those of one process'}", flush=True)
     print(f"{options.runs} runs, {faults} faults: {dict(total)}")
     raise SystemExit(bool(faults))
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import subprocess
+from collections import Counter
+from collections.abc import Callable
 
 from farms import PYTHON, make_graph
 from halation.cli.cluster_job import prepare_chunk
@@ -56,6 +58,61 @@ def test_a_worker_gets_one_chunk_until_it_is_known_what_a_frame_costs():
     assert len(queue.take(2).frames) == CHUNK_SECONDS / 0.5
     queue.note_cost([9.0], is_first=True)
     assert len(queue.take(2).frames) == CHUNK_SECONDS / 0.5
+
+
+def end_chunks(queue: AssignmentQueue, is_deadly: Callable[[tuple[int, ...]], bool]) -> tuple[set[int], dict[int, str]]:
+    """Take chunks until there are none, where some end their process: the frames that are finished, and why others
+    are not."""
+    finished, faults = set[int](), dict[int, str]()
+    while len(queue):
+        assignment = queue.take(2)
+        assert assignment is not None
+        if is_deadly(assignment.frames):
+            lost = queue.put_suspects(assignment.frames, assignment, "near")
+            faults |= dict.fromkeys(lost, queue.explain_loss(lost, "it ends"))
+            queue.finish(lost)
+        else:
+            finished |= set(assignment.frames)
+            queue.finish(assignment.frames)
+    return finished, faults
+
+
+def test_the_frame_of_a_chain_that_ends_its_process_is_found_and_the_others_are_finished():
+    tries = Counter[tuple[int, ...]]()
+
+    def is_deadly(frames: tuple[int, ...]) -> bool:
+        tries[frames] += 1
+        return 6 in frames
+
+    queue = AssignmentQueue((5, 6, 7, 8, 9, 10), is_chain=True)
+    assert end_chunks(queue, is_deadly) == ({5, 7, 8, 9, 10}, {6: "it ends"})
+    assert tries == {(5, 6, 7, 8, 9, 10): 1, (5,): 1, (6,): 2, (7, 8, 9, 10): 1}
+
+
+def test_frames_of_a_chain_that_need_one_that_ends_its_process_are_tried_once():
+    sentence = "one worker renders all frames, and frame 6 cannot be rendered"
+    queue = AssignmentQueue(range(5, 100), is_chain=True)
+    finished, faults = end_chunks(queue, lambda frames: frames[-1] >= 6)
+    assert finished == {5} and faults == {6: "it ends"} | dict.fromkeys(range(7, 100), sentence)
+
+
+def test_frames_after_a_suspect_of_a_chain_wait_for_it():
+    queue = AssignmentQueue((1, 2, 3), is_chain=True)
+    whole = queue.take(2)
+    assert whole is not None and queue.put_suspects((1, 2, 3), whole, "near") == ()
+    suspect = queue.take(2)
+    assert suspect is not None and (suspect.frames, suspect.attempts, suspect.tried) == ((1,), 1, {"near"})
+    assert queue.take(2) is None and len(queue) == 2
+    queue.finish((1,))
+    following = queue.take(2)
+    assert following is not None and following.frames == (2,)
+
+
+def test_a_video_whose_process_ends_begins_anew():
+    queue = AssignmentQueue((1, 2), is_chain=True, is_whole=True)
+    tries: list[tuple[int, ...]] = []
+    finished, faults = end_chunks(queue, lambda frames: bool(tries.append(frames) or True))
+    assert tries == [(1, 2)] * 3 and not finished and faults == {1: "it ends", 2: "it ends"}
 
 
 def test_what_all_frames_share_is_computed_by_the_first_chunk_alone(shot):

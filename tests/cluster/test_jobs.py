@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+import re
+import sys
 import time
 
 import pytest
@@ -78,6 +80,23 @@ def test_only_workers_with_a_gpu_render_where_there_are_some(halation, shot, far
         time.sleep(0.1)  # until the new worker is connected
     ending = halation("render", "shot.json", *words, "--deterministic")
     assert json.loads(ending.out)["workers"] > 1 and len(list(shot.glob("f.*.exr"))) == len(FRAMES)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="this system has no EGL")
+def test_each_worker_of_a_machine_renders_on_the_device_that_it_is_told(halation, shot, make_farm):
+    """There is no tenth one here, so its worker is refused. Pinned pixels come from the software rasterizer anyway."""
+    farm = make_farm()
+    for place in ("9", "0"):
+        farm.start_worker(GLCONTEXT_DEVICE_INDEX=place)
+    words = ("render", "shot.json", "-o", "f.####.exr", "--cluster", farm.address, "--json")
+    ending = halation(*words)
+    while json.loads(ending.out)["workers"] == 1 and "it gets no frames" not in ending.err:
+        ending = halation(*words)  # until the other one is connected
+    assert ending.code == 0 and re.search(r"worker tcp://\S+: .*requested device index 9", ending.err), ending.err
+    end_group(farm.workers.pop(1))
+    ending = halation(*words, "--deterministic")
+    assert ending.code == 0 and json.loads(ending.out)["workers"] == 1, ending.err
+    check_whole(halation, shot)
 
 
 def test_a_suite_is_shared_and_reports_what_one_process_does(halation, shot, farm):

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 from farms import (
+    CRASH,
     FRAMES,
     FULL,
     SLOW,
@@ -279,6 +280,25 @@ def test_the_frame_at_fault_of_a_chain_is_named(halation, shot, farm):
     assert ending.code == 1, ending.err
     assert f"frame 3: {elsewhere / 'shot' / 'plates' / 'p.0003.exr'}: is another file" in ending.err, ending.err
     assert "frame 1: one worker renders all frames, and frame 3 cannot be rendered" in ending.err
+
+
+def test_a_frame_of_a_chain_that_ends_its_process_is_named_and_others_are_finished(halation, shot, make_farm, tmp_path):
+    """Frames before it may be written and not reported yet when the process ends."""
+    graph = make_graph()
+    graph["nodes"]["blur"] = {"type": "feedback"}
+    del graph["animation"]
+    (shot / "shot.json").write_text(json.dumps(graph))
+    farm = make_farm()
+    farm.start_worker(**customize(tmp_path / "crash", CRASH), CRASH_AT="4")
+    ending = halation(*render_words(farm))
+    assert ending.code == 1 and "one worker renders all frames: node 'blur'" in ending.err, ending.err
+    named = re.findall(r"^frame (\d): (.*)", ending.err, re.M)
+    assert [frame for frame, _ in named] == ["4"] and named[0][1].startswith("on 3 tries, the last on "), ending.err
+    (shot / "one").mkdir()
+    assert halation("render", "shot.json", "-o", "one/f.####.exr", "--deterministic").code == 0
+    for frame in (1, 2, 3, 5, 6, 7, 8):
+        assert (shot / f"f.{frame:04d}.exr").read_bytes() == (shot / "one" / f"f.{frame:04d}.exr").read_bytes()
+    assert list_written(shot) == [1, 2, 3, 5, 6, 7, 8]
 
 
 def test_a_chain_with_a_missing_picture_names_each_frame(halation, shot, farm):

@@ -7,8 +7,14 @@ import time
 
 import pytest
 from farms import end_group, read_frames, start_halation
+from halation.cli.execute import open_job_graph
+from halation.cli.job_setup import find_remembering_node
+from halation.cli.parsing import find_targets
 from halation.cluster.chunk import ChunkStage, StageReport
 from halation.cluster.staged_assignments import StagedAssignments
+from halation.renderer.jobs.render_job import RenderJob
+from halation.resources.sandbox import UNRESTRICTED
+from msgspec.structs import replace
 
 pytest.importorskip("distributed", reason="Dask is not installed")
 
@@ -62,6 +68,20 @@ def test_each_frame_of_a_history_is_computed_once_and_all_are_those_of_one_proce
     report = json.loads(halation(*cluster_words(farm, "--json", "--resume")).out)
     assert report["kept"] == [frame for frame in FRAMES if frame not in (2, 7)] and report["stages"]["history"] == 6
     assert read_frames(shot / "many", FRAMES) == local_frames
+
+
+def test_an_effect_that_begins_at_nothing_is_a_stage_too(shot):
+    """At the first frame the glow has no passes, so that all of it is the memory."""
+    graph = json.loads(json.dumps(GRAPH))
+    del graph["nodes"]["paint"]
+    graph["links"]["trail.image"] = "noise.out"
+    graph["animation"]["glow.sigma"] = {"keys": [{"frame": 1, "value": 0.0}, {"frame": 12, "value": 5.0}]}
+    (shot / "shot.json").write_text(json.dumps(graph))
+    job = RenderJob(sandbox=UNRESTRICTED, graph=str(shot / "shot.json"), frames=tuple(FRAMES))
+    loaded = open_job_graph(job)
+    targets = find_targets(loaded, "")
+    assert find_remembering_node(job, loaded, targets) == ("trail", True)
+    assert find_remembering_node(replace(job, frames=(1,)), loaded, targets) == ("trail", False)
 
 
 def test_a_worker_that_is_killed_during_a_history_leaves_it_to_others(halation, shot, make_farm, local_frames):

@@ -8,6 +8,7 @@ import pytest
 from farms import FULL, check_whole, customize, end_group, make_graph, render_words, start_halation
 from halation.cluster import workers
 from halation.cluster.assignments import Assignment, WaitingAssignments
+from halation.version import VERSION
 
 NEAR, FAR, LATE = "tcp://near:1", "tcp://far:1", "tcp://late:1"
 
@@ -80,6 +81,15 @@ def test_what_waits_is_ready_or_hopeless_once(roster, clock):
     waiting.add(second)
     clock.now += workers.PATIENCE_SECONDS + 0.1
     assert waiting.take_ready() == [] and waiting.take_hopeless() == [second] and not waiting
+
+
+def test_a_worker_that_could_not_be_asked_for_its_version_is_asked_again(roster):
+    facts = {NEAR: {"nthreads": 1}, FAR: {"nthreads": 1}}
+    assert roster.update(facts) == [NEAR, FAR]
+    assert list(roster.check_versions({NEAR: VERSION, FAR: OSError("the connection is closed")})) == []
+    assert roster.update(facts) == [FAR] and roster.usable == [NEAR, FAR]
+    assert list(roster.check_versions({FAR: "0.0.7"})) == [FAR]
+    assert roster.update(facts) == [] and roster.usable == [NEAR]
 
 
 def fail(roster, address: str, *frames: int) -> list[bool]:
