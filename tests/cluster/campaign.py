@@ -32,7 +32,7 @@ from farms import PYTHON, Farm, Proxy, end_group, find_port, list_written, start
 
 FRAMES = 24
 WORKERS = 3
-HARMS = ("kill", "kill", "cut", "restart")
+HARMS = ("kill", "kill", "kill", "cut", "cut", "restart")
 EARLY_HARMS = ("kill", "cut")
 """What may happen before a job has begun: without a scheduler it is refused, with a sentence."""
 
@@ -153,7 +153,7 @@ class HarmedFarm:
             self._farm.address = self._draw.choice((self._direct, self.address))
             mark, folder = self._farm.folder / f"full{len(self._marks)}", self._farm.folder
             variables = {"PYTHONPATH": str(folder), "CRASH_AT": str(self._crash_at), "IS_FULL": str(mark)}
-            self._marks[self._farm.start_worker(**variables)] = mark
+            self._marks[self._farm.start_worker("--no-nanny", **variables)] = mark
 
     def harm(self, kind: str) -> None:
         """Do one thing that may not lose a frame."""
