@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -10,7 +11,9 @@ from uuid import uuid4
 
 from msgspec.structs import replace
 
-from ..errors import HalationError
+from ..errors import HalationError, OutputError
+from ..graph.frames import Pattern
+from ..resources.atomic_write import describe_write_error
 from . import parsing
 from .execute_batch import open_entry_graph
 from .job_setup import choose_frames, find_remembering_node, make_output_settings, make_request
@@ -44,6 +47,7 @@ def prepare_chunk(job: RenderJob, graph: Graph, path_map: PathPairs) -> tuple[Fr
     job = replace(job, inputs=inputs, frames=job.frames or choose_frames(job, graph, inputs))
     request, settings = make_request(job, inputs, targets), make_output_settings(job, job.files)
     plan_destinations(graph, request, settings, job.frames, job.sandbox)
+    _check_folders(job, path_map)
     node, has_stages = find_remembering_node(job, graph, targets)
     first = LazyResourceProvider(job.sandbox).find_frames(graph, inputs)[0]
     stage = _open_stage(job, first) if has_stages and not job.videos else None
@@ -130,6 +134,19 @@ def _open_stage(job: RenderJob, first: int) -> ChunkStage | None:
         return None
     folder = Path(os.path.abspath(job.files[0][1])).parent / f"{FOLDER_PREFIX}{uuid4().hex[:12]}"  # noqa: PTH100
     return ChunkStage(folder=str(folder), frame_before=first)
+
+
+def _check_folders(job: RenderJob, path_map: PathPairs) -> None:
+    """Raise OutputError for a folder that is missing here, unless it has another path elsewhere: all machines see the
+    same folders, and would say so of every frame.
+    """
+    for _, path in job.destinations:
+        pattern = Pattern.parse(path)
+        file = path if pattern is None else pattern.name(job.frames[0])
+        folder = Path(_make_absolute(file)).parent
+        if not folder.exists() and not any(folder.is_relative_to(before) for before, _ in path_map):
+            missing = FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT))
+            raise OutputError(f"{file}: cannot be written: {describe_write_error(missing)}")
 
 
 def _find_history(graph: Graph, frames: Sequence[int], first: int | None) -> range:

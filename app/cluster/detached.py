@@ -139,9 +139,9 @@ class JobBoard:
         deadline = time.monotonic() + _ANSWER_SECONDS
         while future.status == "pending" and time.monotonic() < deadline:  # the scheduler answers a moment later
             time.sleep(_POLL_SECONDS)
-        if future.status == "finished":
-            return read_struct(future.result(), JobStatus)
         facts = cast("Mapping[str, Any]", self._client.get_metadata([name], {"graph": "", "parts": 0, "unit": "frame"}))
+        if future.status == "finished":
+            return replace(read_struct(future.result(), JobStatus), graph=facts["graph"])
         events = cast("Sequence[tuple[float, Any]]", self._client.get_events(name))
         status = convert_data(events[-1][1], JobStatus) if events else None
         status = status or JobStatus(name, facts["graph"], "rendering", 0, facts["parts"], unit=facts["unit"])

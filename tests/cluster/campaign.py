@@ -18,7 +18,7 @@ import sys
 import tempfile
 import time
 import traceback
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
@@ -35,6 +35,13 @@ WORKERS = 3
 HARMS = ("kill", "kill", "kill", "cut", "cut", "restart")
 EARLY_HARMS = ("kill", "cut")
 """What may happen before a job has begun: without a scheduler it is refused, with a sentence."""
+
+QUIET = {
+    "DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED": "False",
+    "DASK_DISTRIBUTED__ADMIN__TICK__INTERVAL": "1s",
+    "DASK_DISTRIBUTED__ADMIN__SYSTEM_MONITOR__INTERVAL": "10s",
+}
+"""What docs/cluster.md advises, so that Dask takes less of the processors."""
 
 SECONDS = 600.0
 """How long a job may take on a busy machine: a choice, many times what it takes on a quiet one."""
@@ -125,6 +132,15 @@ def plan_run(seed: int, number: int) -> Plan:
     return Plan(graph, has_full_disk, crash_at, f"{seed}.{number}.harm", tuple(early), tuple(late))
 
 
+def is_running(group: int) -> bool:
+    """True if there are processes of a group."""
+    try:
+        os.killpg(group, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
 class HarmedFarm:
     """A farm whose sender and some of whose workers reach the scheduler through a proxy, for one run at a time."""
 
@@ -148,7 +164,8 @@ class HarmedFarm:
             self._marks[self._draw.choice(self._farm.workers)].touch()
 
     def fill(self) -> None:
-        """Start workers that are missing."""
+        """Start workers that are missing, as whoever supervises a farm does. One that is cut off ends by itself."""
+        self._farm.workers[:] = filter(is_running, self._farm.workers)
         for _ in range(WORKERS - len(self._farm.workers)):
             self._farm.address = self._draw.choice((self._direct, self.address))
             mark, folder = self._farm.folder / f"full{len(self._marks)}", self._farm.folder
@@ -174,52 +191,53 @@ class HarmedFarm:
         self._proxy.close()
 
 
-def render(folder: Path, *words: str) -> subprocess.Popen[str]:
+def render(folder: Path, *words: str, log: Path) -> subprocess.Popen[bytes]:
     """Start a render of all frames in a folder."""
     command = [PYTHON, "-m", "halation.cli", "render", *words, "--deterministic"]
     environment = {**os.environ, "HALATION_DEBUG": "1"}
-    return subprocess.Popen(
-        command, cwd=folder, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
-    )
+    with log.open("wb") as errors:
+        return subprocess.Popen(command, cwd=folder, env=environment, stdout=subprocess.DEVNULL, stderr=errors)
 
 
-def try_once(folder: Path, number: int, plan: Plan, harmed: HarmedFarm) -> Ending:
+def try_once(folder: Path, number: int, plan: Plan, farm: HarmedFarm) -> Ending:
     """Render on a cluster that is harmed."""
-    ending, started = Ending(number), time.monotonic()
-    output = folder / f"run{number}"
-    output.mkdir()
-    process: subprocess.Popen[str] | None = None
+    started, log = time.monotonic(), folder / f"run{number}.log"
+    (folder / f"run{number}").mkdir()
+    farm.prepare(plan)
+    words = (f"{plan.graph}.json", "-o", f"run{number}/f.####.exr", "--cluster", farm.address)
+    process = render(folder, *words, log=log)
+    ending = Ending(number, ["full disk"] * plan.has_full_disk + ["crashing frame"] * bool(plan.crash_at))
     try:
-        harmed.prepare(plan)
-        ending.harms += ["full disk"] * plan.has_full_disk + ["crashing frame"] * bool(plan.crash_at)
-        words = ("-o", f"run{number}/f.####.exr", "--cluster", harmed.address)
-        process = render(folder, f"{plan.graph}.json", *words)
-        harm_in_turn(harmed, process, plan.early, ending)
-        while not any(output.iterdir()) and process.poll() is None:
-            time.sleep(0.05)
-        harm_in_turn(harmed, process, plan.late, ending)
-        _, err = process.communicate(timeout=SECONDS)
-        ending.fault = find_fault(folder, number, plan, process.returncode, err)
-    except subprocess.TimeoutExpired:
-        ending.fault = "it does not end"
+        ending.harms += harm_in_turn(farm, process, folder / f"run{number}", plan)
+        ending.fault = find_fault(folder, number, plan, process.wait(), log.read_text())
+    except TimeoutError:
+        ending.fault = f"it does not end:\n{log.read_text()}"
     except Exception:  # the run has a fault, and the others are tried
         ending.fault = traceback.format_exc()
     finally:
-        if process is not None:
-            process.kill()
+        process.kill()
     ending.seconds = round(time.monotonic() - started, 1)
     return ending
 
 
-def harm_in_turn(
-    harmed: HarmedFarm, process: subprocess.Popen[str], harms: tuple[tuple[float, str], ...], ending: Ending
-) -> None:
-    """Do one thing after the other, while the job runs."""
-    for pause, kind in harms:
-        time.sleep(pause)
-        if process.poll() is None:
-            ending.harms.append(kind)
-            harmed.harm(kind)
+def harm_in_turn(farm: HarmedFarm, process: subprocess.Popen[bytes], output: Path, plan: Plan) -> list[str]:
+    """Do one thing after the other until a job ends, and say what was done. Raises TimeoutError."""
+    deadline, done, late = time.monotonic() + SECONDS, list[str](), deque(plan.late)
+    early, since, is_late = deque(plan.early), time.monotonic(), False
+    while process.poll() is None:
+        if time.monotonic() > deadline:
+            raise TimeoutError
+        if not is_late and not early and any(output.iterdir()):
+            is_late, since = True, time.monotonic()
+        harms = late if is_late else early
+        if harms and time.monotonic() - since > harms[0][0]:
+            _, kind = harms.popleft()
+            farm.harm(kind)
+            done.append(kind)
+            since = time.monotonic()
+        farm.fill()
+        time.sleep(0.1)
+    return done
 
 
 def find_fault(folder: Path, number: int, plan: Plan, code: int, err: str) -> str:
@@ -269,13 +287,15 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("-j", type=int, default=1, help="runs side by side")
     options = parser.parse_args()
+    os.environ.update(QUIET)
     faults, total = 0, Counter[str]()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         for graph, document in GRAPHS.items():
             (folder / f"{graph}.json").write_text(json.dumps({**SHARED, **document}))
             (folder / graph).mkdir()
-            assert render(folder, f"{graph}.json", "-o", f"{graph}/f.####.exr").wait(SECONDS) == 0
+            words = (f"{graph}.json", "-o", f"{graph}/f.####.exr")
+            assert render(folder, *words, log=folder / f"{graph}.log").wait(SECONDS) == 0
         for ending in run_all(folder, options):
             faults += bool(ending.fault)
             total.update(ending.harms)

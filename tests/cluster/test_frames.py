@@ -112,6 +112,18 @@ def test_what_cannot_be_is_one_sentence(halation, words, sentence):
     assert ending.code in (1, 2) and sentence in ending.err and ending.err.count("\n") == 1, ending.err
 
 
+def test_a_missing_folder_is_named_before_anything_is_sent(halation, shot, farm, local_frames):
+    """As one process says it, not once for each frame and worker. A folder that is mapped need not be here."""
+    here = halation("render", "shot.json", "-o", "none/f.####.exr")
+    there = halation("render", "shot.json", "-o", "none/f.####.exr", "--cluster", farm.address)
+    assert here.code == there.code == 1 and there.err.splitlines() == here.err.splitlines()[-1:], (here, there)
+    assert "none/f.0001.exr: cannot be written: there is no such folder: create it first" in there.err
+    (shot / "elsewhere").mkdir()
+    words = ("--cluster", farm.address, "--map", f"{shot / 'none'}={shot / 'elsewhere'}", "--deterministic")
+    assert halation("render", "shot.json", "-o", "none/f.####.exr", *words).code == 0
+    assert read_frames(shot / "elsewhere") == local_frames
+
+
 def test_a_new_farm_starts_when_a_worker_comes(make_farm, shot):
     farm: Farm = make_farm()
     words = ("render", "shot.json", "-o", "f.####.exr", "--deterministic", "--cluster", farm.address)
