@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 from importlib import import_module
@@ -114,6 +115,9 @@ def test_a_workflow_is_valid_by_the_schema_of_github(cli, shot_folder):
     words = (str(BIN / "check-jsonschema"), "--builtin-schema", "vendor.github-workflows")
     checked = run(*words, "flow.yml")
     assert checked.returncode == 0, checked.stdout
+    if linter := shutil.which("actionlint"):
+        linted = run(linter, "flow.yml")
+        assert linted.returncode == 0, linted.stdout
     flow = shot_folder / "flow.yml"
     flow.write_text(flow.read_text().replace("runs-on", "run-on"))
     assert run(*words, "flow.yml").returncode == 1
