@@ -117,7 +117,7 @@ def start_scheduler(folder: Path, port: int) -> int:
     """Start a scheduler and wait until it listens."""
     words = ["scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard"]
     group = start_dask(words, folder, {})
-    for _ in range(600):
+    for _ in range(2400):  # two minutes: with twenty busy processes for each core half a minute is too short
         with socket.socket() as probe:
             if probe.connect_ex(("127.0.0.1", port)) == 0:
                 return group
