@@ -1,6 +1,9 @@
-"""What lights share to shade pixels that several surfaces share: see shaders/lib/coverage.glsl."""
+"""What lights share to shade pixels that several surfaces share: see shaders/lib/coverage.glsl and normal_turn.glsl."""
 
 from __future__ import annotations
 
 COVERAGE_REACH = 2
 """How many pixels away a surface of a pixel is looked for."""
+
+TURN_REACH = 1
+"""How many pixels beside a surface normals are read to know how it turns."""

@@ -17,7 +17,7 @@ from .._declare import (
     Trait,
     Vector,
 )
-from ._coverage import COVERAGE_REACH
+from ._coverage import COVERAGE_REACH, TURN_REACH
 from ._environment import DATA, SKY, irradiance, shrunk
 
 _MIRROR = (1024, 512)
@@ -118,7 +118,7 @@ class ImageBasedLight(Filter):
             self.occlusion,
             near=near,
             coverage=coverage,
-            overlap=_HERE,
+            overlap={**_HERE, "normal": COVERAGE_REACH + TURN_REACH},
             level0=mirror,
             level1=lobes[0],
             level2=lobes[1],

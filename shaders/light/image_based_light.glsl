@@ -5,6 +5,7 @@
 #include "lib/environment.glsl"
 #include "lib/finite.glsl"
 #include "lib/geometry.glsl"
+#include "lib/normal_turn.glsl"
 #include "lib/pi.glsl"
 
 const float IMAGE_BASED_LIGHT_BRIGHTEST = 65504.0;  // the largest half float: more could overflow in sums
@@ -77,6 +78,12 @@ vec3 image_based_light_level(vec2 uv, float level) {
     if (level < 3.0) return mix(image_based_light_in_level2(uv), image_based_light_in_level3(uv), part);
     if (level < 4.0) return mix(image_based_light_in_level3(uv), image_based_light_in_level4(uv), part);
     return image_based_light_in_level4(uv);
+}
+
+// The picture of the sky for a roughness. Below 0.25 pictures are interpolated by its square: in a dark sky with soft
+// lamps that halves the error and more. Above, roughness itself does better.
+float image_based_light_blur(float roughness) {
+    return roughness < 0.25 ? 16.0 * roughness * roughness : 4.0 * roughness;
 }
 
 // The i-th microfacet around z, distributed by GGX (Walter et al. 2007).
@@ -174,21 +181,38 @@ vec2 image_based_light_shares() {
     return sum / float(IMAGE_BASED_LIGHT_FACETS);
 }
 
+// The light that a surface of the color `f0` mirrors, the mean over the places of a pixel. `covered` is its part of it.
+vec3 image_based_light_mirrored(
+    Turn turn, vec3 view, float roughness, vec3 f0, float covered, float rotation, int up
+) {
+    int places = turn_places(turn, roughness * roughness);
+    float wide = sqrt(turn_alpha(turn, places, roughness * roughness)), total = 0.0;
+    vec3 sum = vec3(0.0);
+    for (int place = 0; place < places; ++place) {
+        vec3 normal = turn_normal(turn, place, places);
+        vec2 share = shares_near(vec2(clamp(dot(normal, view), 0.0, 1.0), wide) * vec2(shares_size - 1) + 0.5);
+        vec2 uv = image_based_light_uv(reflect(-view, normal), up, rotation);
+        vec3 part = clamp(f0 * share.x + covered * share.y, 0.0, 1.0);
+        float weight = turn_weight(normal, view);
+        sum += weight * part * image_based_light_level(uv, image_based_light_blur(wide)), total += weight;
+    }
+    return sum / total;
+}
+
 vec4 image_based_light_reflection(const vec4 rays[3], float intensity, float rotation, int up, float specular) {
     Coverage halves = coverage_of(coverage_at(pixel));
+    bool mixed = coverage_is_mixed(halves);
     vec3 view = -normalize(camera_ray(rays, camera_uv(pixel, extent)));
     vec4 sum = vec4(0.0);
-    for (int k = 0; k < (coverage_is_mixed(halves) ? 2 : 1); ++k) {
+    for (int k = 0; k < (mixed ? 2 : 1); ++k) {
         ImageBasedLightSurface surface = image_based_light_surface(halves, k);
         if (surface.normal == vec3(0.0)) continue;
-        float facing = clamp(dot(surface.normal, view), 0.0, 1.0), roughness = clamp(roughness_at(surface.at), 0.0, 1.0);
         float metal = clamp(metallic_at(surface.at), 0.0, 1.0), covered = surface.part.a;
         // Of non-metals up to 8 % are reflected, as in Disney's model (Burley 2012): 4 % at 0.5.
-        vec3 color = mix(vec3(0.08 * specular * covered), surface.part.rgb, metal);
-        vec2 share = shares_near(vec2(facing, roughness) * vec2(shares_size - 1) + 0.5);
-        vec2 uv = image_based_light_uv(reflect(-view, surface.normal), up, rotation);
-        vec3 mirrored = clamp(color * share.x + covered * share.y, 0.0, 1.0);
-        vec3 light = image_based_light_level(uv, 4.0 * roughness) * mirrored;
+        vec3 f0 = mix(vec3(0.08 * specular * covered), surface.part.rgb, metal);
+        Turn turn = turn_of(surface.at, surface.normal, mixed);
+        float roughness = clamp(roughness_at(surface.at), 0.0, 1.0);
+        vec3 light = image_based_light_mirrored(turn, view, roughness, f0, covered, rotation, up);
         sum += vec4(intensity * clamp(occlusion_at(surface.at), 0.0, 1.0) * light, covered);
     }
     return finite(sum);
