@@ -12,8 +12,8 @@ const int TURN_PLACES = 4;  // places in a pixel, no two in the same row or colu
 const vec2 TURN_AT[TURN_PLACES] =
     vec2[](vec2(-0.375, -0.125), vec2(-0.125, 0.375), vec2(0.125, -0.375), vec2(0.375, 0.125));
 const float TURN_WHOLE = 1.0 / 12.0;  // the variance of places all over a pixel, per axis
-// The variance of what one of the four places stands for: between a quarter along one axis, 1 / 192, and half along
-// both, 1 / 48. Of these and the middle, this has the least error on bumps with radii of 5 to 30 pixels.
+// The variance of what one of the four places stands for. Between a quarter of one axis, 1 / 192, which does better on
+// pipes, and half of both, 1 / 48, which does better on bumps with a radius of 5 pixels.
 const float TURN_PART = 1.0 / 100.0;
 const float TURN_MOST = 0.18;  // the most that is added to the square of alpha: that of Tokuyoshi and Kaplanyan
 // Normals beside it may tell too little of a turn: steps are lengthened so much, and the variance may be so many times
@@ -35,8 +35,8 @@ vec3 turn_step(ivec2 at, ivec2 way, vec3 normal) {
     return first < second ? ahead : behind;
 }
 
-// How `normal` turns, for a surface of this pixel that covers the pixel `at`. Of a pixel that several surfaces share the
-// length tells less.
+// How `normal` turns, for a surface of this pixel that covers the pixel `at`. Of a pixel that several surfaces share
+// the length tells less.
 Turn turn_of(ivec2 at, vec3 normal, bool shared_pixel) {
     vec3 filtered = finite(normal_at(at)), middle = unit_normal(filtered);
     vec3 across = turn_step(at, ivec2(1, 0), middle), down = turn_step(at, ivec2(0, 1), middle);

@@ -95,7 +95,10 @@ def rays(normal):
     return ray / np.linalg.norm(ray, axis=-1, keepdims=True)
 
 
-@pytest.mark.parametrize(("roughness", "most"), [(0.0, 0.01), (0.12, 0.01), (0.2, 0.01), (0.25, 0.01), (0.5, 0.01), (0.75, 0.02), (1.0, 0.02)])
+@pytest.mark.parametrize(
+    ("roughness", "most"),
+    [(0.0, 0.01), (0.12, 0.01), (0.2, 0.01), (0.25, 0.01), (0.5, 0.01), (0.75, 0.02), (1.0, 0.02)],
+)
 def test_reflections_are_the_sky_by_the_lobe(run, roughness, most):
     """White metal, divided by what it mirrors of an even sky: the mean by GGX around the mirrored view."""
     normal = normals()
