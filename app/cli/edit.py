@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Annotated
 
@@ -70,8 +71,24 @@ def _open_editor(graph: Path | None, inputs: list[str] | None, lesson: str) -> i
         bindings = resolve_inputs(document.load(graph, sandbox=sandbox), parsing.parse_inputs(inputs))
     from ..editor import edit as open_editor
 
-    open_editor(graph, bindings, sandbox, _find_lesson(lesson) if lesson else "")
+    try:
+        open_editor(graph, bindings, sandbox, _find_lesson(lesson) if lesson else "")
+    except ImportError as fault:
+        raise name_missing_library(fault) from fault
     return 0
+
+
+def name_missing_library(fault: ImportError) -> Exception:
+    """What to tell of an import that failed: which library of the system is missing; else the fault itself."""
+    from ..errors import DeviceError
+
+    match = re.match(r"(lib[\w+-]+\.so[.\d]*): cannot open shared object file", str(fault))
+    if not match:
+        return fault
+    return DeviceError(
+        f"no window can be opened: the system has no {match[1]}: install the libraries of X11 and OpenGL "
+        "(Debian and Ubuntu: libx11-6 libgl1 libegl1; Fedora: libX11 libglvnd-glx libglvnd-egl)"
+    )
 
 
 def _find_lesson(name: str) -> str:

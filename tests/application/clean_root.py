@@ -28,8 +28,12 @@ from small_system import HOME, Array, Screen, SmallSystem, count_colors, wait_un
 
 ROOT = Path(__file__).parents[2]
 TOOLS = ("mmdebstrap", "bwrap", "Xvfb", "openbox", "xdotool")
-PACKAGES = ("zsh", "fish", "libglib2.0-bin", "shared-mime-info", "desktop-file-utils")
-"""What the desktop of a user has: shells, GIO, by which file managers open files, and the types of files."""
+PACKAGES = (
+    *("bash", "zsh", "fish", "libx11-6", "libx11-xcb1", "fontconfig-config", "fonts-dejavu-core"),
+    *("libglib2.0-bin", "shared-mime-info", "desktop-file-utils"),
+)
+"""What the desktop of a user has: shells, the libraries of X11, fonts, GIO, by which file managers open files, and the
+types of files."""
 
 OPENGL = ("libegl1", "libgl1", "libgl1-mesa-dri")
 SIZE_LIMIT = 250_000_000
@@ -42,6 +46,8 @@ STARTS = 9
 """Starts of each program, in turn: their median is compared. Chosen by judgement."""
 
 PRESET = "soft_bloom"
+_COLORS = 10_000
+"""The least colors of the editor as soon as it shows the picture of the preset; its panels have 3,000."""
 
 
 class Trial:
@@ -144,7 +150,7 @@ class Trial:
         words = ("sh", "-c", f"gio open demo/{PRESET}.json; sleep 600")
         with self._system.start(*words, display=self._screen.name):
             window = self._screen.wait_for_window(f"{PRESET}.*Halation$")
-            self._take_picture("opened.png")
+            self._take_picture("opened.png", _COLORS)
         self._screen.wait_for_no_window(window)
         return "opened.png"
 
@@ -165,7 +171,7 @@ class Trial:
         with self._system.start("halation", "edit", PRESET, display=self._screen.name) as process:
             self._screen.wait_for_window("Halation$")
             shown = time.perf_counter() - started
-            self._take_picture("editor.png")
+            self._take_picture("editor.png", _COLORS)
             self._screen.press("key", "ctrl+shift+s")
             time.sleep(2.0)
             self._screen.press("key", "ctrl+a")
@@ -188,7 +194,7 @@ class Trial:
         (command,) = re.findall("^Exec=(.*)$", entry, re.M)
         with self._bare.start(*shlex.split(command.replace("%f", "")), display=self._screen.name):
             self._screen.wait_for_window("^Halation$")
-            self._take_picture("no_opengl.png", least_colors=20)
+            self._take_picture("no_opengl.png", 20)
         return "no_opengl.png"
 
     def measure_start(self) -> str:
@@ -208,7 +214,7 @@ class Trial:
         assert packed <= START_LIMIT * own, f"{packed:.2f} s, {packed / own:.2f} of {own:.2f} s"
         return f"{packed:.2f} s, {packed / own:.2f} of {own:.2f} s"
 
-    def _take_picture(self, name: str, least_colors: int = 2000) -> Array:
+    def _take_picture(self, name: str, least_colors: int) -> Array:
         pixels = self._screen.wait_for_picture(least_colors)
         picture = oiio.ImageBuf(np.ascontiguousarray(pixels))
         assert picture.write(str(self._pictures / name)), picture.geterror()

@@ -14,9 +14,11 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from halation import desktop, media, presets
+from halation.cli import edit
 from halation.cli.declarations import list_commands
 from halation.cli.man_pages import write_man_pages
 from halation.cli.program import app
+from halation.errors import DeviceError
 from halation.nodes import Kind
 from halation.resources.sandbox import UNRESTRICTED
 from typer.main import get_command
@@ -146,6 +148,24 @@ def test_an_error_shows_in_a_window(cli, tmp_path, monkeypatch):
     missing = tmp_path / "missing.exr"
     assert cli("edit", missing).code == 4 and not shown
     assert cli("edit", "--show-errors", missing).code == 4 and f"{missing}" in shown[0]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX: a program of the desktop is a script")
+def test_an_error_shows_where_tk_cannot_start(tmp_path, monkeypatch):
+    """Without its libraries Tk cannot be imported; a program of the desktop shows the error."""
+    (tmp_path / "zenity").write_text(f'#!/bin/sh\nprintf "%s|" "$@" >"{tmp_path}/shown"\n')
+    (tmp_path / "zenity").chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setitem(sys.modules, "tkinter", None)
+    desktop.show_error("there is no driver")
+    assert (tmp_path / "shown").read_text() == "--error|--no-markup|--text|there is no driver|"
+
+
+def test_a_missing_library_is_named_with_what_to_install():
+    fault = edit.name_missing_library(ImportError("libX11.so.6: cannot open shared object file: No such file"))
+    assert isinstance(fault, DeviceError) and "no libX11.so.6: install" in str(fault)
+    other = ImportError("cannot import name 'a' from 'b'")
+    assert edit.name_missing_library(other) is other
 
 
 def test_a_manual_page_has_all_that_the_help_has(cli):

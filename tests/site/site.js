@@ -6,7 +6,7 @@ new MutationObserver(() => {
   for (const place of document.querySelectorAll(".md-typeset__scrollwrap, pre > code")) {
     if (place.tabIndex < 0) place.tabIndex = 0;
   }
-  for (const place of document.querySelectorAll(".md-code__nav:not([role])")) place.role = "group";
+  for (const place of document.querySelectorAll(".md-code__nav:not([role])")) place.role = "none";
 }).observe(document.documentElement, { subtree: true, childList: true, attributeFilter: ["tabindex"] });
 
 // The index of the search is larger than all else together, and most visitors never search: where a server sends it, it
