@@ -94,7 +94,8 @@ def explain(
     )
     if html is not None:
         wanted_form = form_or_device if form and form_or_device != "device" else None
-        order = _PageOrder(html, opened_graph, bindings, wanted_form, memory_limit, precision)
+        title = graph.stem.replace("_", " ").capitalize()
+        order = _PageOrder(html, title, opened_graph, bindings, wanted_form, memory_limit, precision)
         page = partial(_write_page, order, request, sandbox)
         return run_watched(page, (opened_graph,), timeout, as_json, memory=memory_limit)
     plan = _compile(opened_graph, request, provider, _choose_target(form_or_device, memory_limit, sandbox), precision)
@@ -143,6 +144,7 @@ class _PageOrder(NamedTuple):
     """A page to write, and how its passes are planned and run."""
 
     output: Path
+    title: str
     graph: Graph
     bindings: Mapping[str, Binding | Callable[[int], Binding]]
     form: Form | None
@@ -177,8 +179,8 @@ def _write_page(order: _PageOrder, request: Request, sandbox: Sandbox) -> int:
     renderer.runner.measure(plan)  # a first run, in which drivers compile: the times of the second one are shown
     name, surface = next(iter(plan.outputs.items()))
     view = graph.outputs[name].view if name in graph.outputs else ""
-    title = output.stem.replace("_", " ")
-    page = PassesPage(plan, title, find_about(graph).doc, view or choose_default_view(plan, surface, renderer.pictures))
+    view = view or choose_default_view(plan, surface, renderer.pictures)
+    page = PassesPage(plan, order.title, find_about(graph).doc, view)
     page.add_pixels({upload.surface: renderer.pictures.load_pixels(upload.picture) for upload in plan.uploads})
     for trace in renderer.runner.trace(plan):
         page.add_pass(trace)

@@ -80,6 +80,10 @@ def page(cli, graphs, tmp_path) -> Page:
     return Page(file.read_text("utf-8"))
 
 
+def test_the_page_is_called_what_its_graph_is_called(page):
+    assert page.texts["h1"] == ["Graph"] and page.texts["title"] == ["Graph: passes"]
+
+
 def test_pictures_are_those_of_a_render(cli, graphs, page, tmp_path):
     out, matte = tmp_path / "out.png", tmp_path / "matte.png"
     files = ("-o", f"image={out}", "-o", f"matte={matte}", "--dither", "none")
