@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import shutil
 import subprocess
 
@@ -13,20 +12,26 @@ _PROGRAMS = (("zenity", "--error", "--no-markup", "--text"), ("kdialog", "--erro
 def show_error(sentence: str) -> None:
     """Show an error in a window and wait until it is closed. Without a display, nothing happens.
 
-    Tk draws without OpenGL, whose absence is what most often has to be said. Where Tk itself lacks a library, a
+    Tk draws without OpenGL, whose absence is what most often has to be said. Where Tk lacks a library or a font, a
     program of the desktop shows it.
     """
     try:
-        import tkinter
-        from tkinter import messagebox
-    except ImportError:
+        _show_in_tk(sentence)
+    except (ImportError, RuntimeError):
         _call_program(sentence)
-        return
-    with contextlib.suppress(tkinter.TclError):
+
+
+def _show_in_tk(sentence: str) -> None:
+    import tkinter
+    from tkinter import messagebox
+
+    try:
         root = tkinter.Tk(className="Halation")
         root.withdraw()
         messagebox.showerror("Halation", sentence, parent=root)
         root.destroy()
+    except tkinter.TclError as fault:
+        raise RuntimeError(str(fault)) from fault
 
 
 def _call_program(sentence: str) -> None:
