@@ -192,12 +192,7 @@ def test_opaque_pictures_have_no_alpha(tmp_path: Path, rng: Random) -> None:
 
 
 @pytest.mark.parametrize(
-    ("alpha", "precision", "count"),
-    [
-        (0.9995, "half", 3),
-        (0.9995, "float", 4),
-        (0.99, "half", 4),
-    ],
+    ("alpha", "precision", "count"), [(0.9995, "half", 3), (0.9995, "float", 4), (0.99, "half", 4)]
 )
 def test_alpha_stays_where_a_code_says_something(
     tmp_path: Path, rng: Random, alpha: float, precision: Precision, count: int
