@@ -223,7 +223,9 @@ class Trial:
 
 def _read_picture(path: Path) -> Array:
     """The pixels of a picture as they are."""
-    return oiio.ImageBuf(str(path)).get_pixels(oiio.UINT8)[..., :3]
+    pixels = oiio.ImageBuf(str(path)).get_pixels(oiio.UINT8)
+    assert pixels is not None, f"{path} is no picture"
+    return pixels[..., :3]
 
 
 def make_root(folder: Path, suite: str, *packages: str) -> Path:

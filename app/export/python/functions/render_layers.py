@@ -109,7 +109,7 @@ def rebuild_beauty(
     total, alpha = np.zeros((1, 1, 3)), np.zeros((1, 1, 1))
     for color, light in lights:
         if light is not None:
-            factor = color if isinstance(color, float) else color[..., :3]
+            factor = color[..., :3] if isinstance(color, np.ndarray) else color
             total, alpha = total + factor * light[..., :3], np.maximum(alpha, light[..., 3:])
     if beauty is None:
         return join(total, alpha), np.zeros((1, 1, 1)), np.zeros((1, 1, 1))
