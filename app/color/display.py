@@ -12,8 +12,6 @@ from functools import lru_cache
 from types import MappingProxyType
 from typing import Any, Literal
 
-import numpy as np
-
 from ..errors import UsageError
 from ..resources.suggestions import find_near_names
 from .management import (
@@ -24,7 +22,7 @@ from .management import (
     load_ocio,
     load_studio_config,
 )
-from .transforms import Array, apply_processor, quantize, unpremultiply
+from .transforms import Array, apply_to_rgb, quantize, unpremultiply
 
 NO_VIEW = "none"
 VIDEO_VIEW = "bt1886"
@@ -129,9 +127,7 @@ def to_display(
     """
     processor = make_display_processor(view, display, look, manager).getDefaultCPUProcessor()
     pixels = unpremultiply(array)
-    rgb = np.ascontiguousarray(pixels[..., :3])
-    apply_processor(processor, rgb)
-    pixels[..., :3] = rgb
+    apply_to_rgb(processor, pixels)
     return pixels if bits == 32 else quantize(pixels, bits)
 
 

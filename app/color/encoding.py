@@ -13,7 +13,17 @@ from .display import VIDEO_VIEW, check_view, find_display, find_view, to_display
 from .dithering import make_dither
 from .management import LINEAR_REC709, ColorManager, OcioColorSpace, get_default_color_manager
 from .primaries import find_chromaticities
-from .transforms import Array, convert_premultiplied, from_working, is_matrix, quantize, unpremultiply
+from .transforms import (
+    Array,
+    apply_to_rgb,
+    convert_premultiplied,
+    find_writing_processor,
+    from_working,
+    is_matrix,
+    quantize,
+    run_side_by_side,
+    unpremultiply,
+)
 
 SRGB = "srgb_rec709_scene"
 VIDEO_SPACE = "g24_rec709_scene"
@@ -21,6 +31,8 @@ VIDEO_SPACE = "g24_rec709_scene"
 
 _IN_PNG = (SRGB, "srgb_p3d65_scene", "g22_rec709_scene", "lin_rec709_scene")
 _USE_DISPLAY_NAME = "<USE_DISPLAY_NAME>"
+_BAND_ROWS = 64
+"""Rows that are encoded at a time: the dither repeats after as many, and their numbers stay in the cache of a core."""
 
 
 class Encoding(Struct, frozen=True):
@@ -70,13 +82,21 @@ class Encoding(Struct, frozen=True):
         Data is its number times the largest integer: no view and no color space applies. 10 bits are the upper ones
         of 16. Color is dithered up to 10 bits, alpha and data are not. `frame` chooses the pattern.
         """
-        encoded = self.to_encoded(array, is_data=is_data)
+        height, width = array.shape[:2]
+        codes = np.empty(array.shape, np.uint8 if bits == 8 else np.uint16)
+        noise = None
         if bits < 16 and self.dithers(is_data):
-            height, width = encoded.shape[:2]
-            noise = make_dither(width, height, frame) / np.float32((1 << bits) - 1)
-            for channel in range(3):  # the same for all: gray stays gray. Numpy adds four times as fast one by one
-                encoded[..., channel] += noise
-        codes = quantize(encoded, bits)
+            noise = make_dither(width, _BAND_ROWS, frame) / np.float32((1 << bits) - 1)
+
+        def encode(top: int) -> None:
+            rows = slice(top, top + _BAND_ROWS)
+            encoded = self.to_encoded(array[rows], is_data=is_data)
+            if noise is not None:
+                for channel in range(3):  # the same for all: gray stays gray. Numpy adds four times as fast one by one
+                    encoded[..., channel] += noise[: len(encoded)]
+            codes[rows] = quantize(encoded, bits)
+
+        run_side_by_side(encode, range(0, height, _BAND_ROWS))
         return np.rint(codes * (65535 / 1023)).astype(np.uint16) if bits == 10 else codes  # white stays white
 
     def dithers(self, is_data: bool = False) -> bool:
@@ -90,7 +110,8 @@ class Encoding(Struct, frozen=True):
         if not self.space:
             return to_display(array, self.view, bits=32, display=self.display, look=self.look, manager=self.manager)
         encoded = unpremultiply(array)
-        encoded[..., :3] = from_working(encoded[..., :3], self._target, self.manager)
+        if processor := find_writing_processor(self._target, self.manager):
+            apply_to_rgb(processor, encoded)
         return encoded
 
     @property

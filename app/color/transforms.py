@@ -5,7 +5,7 @@ OpenColorIO is imported only when a file needs it: sRGB to linear Rec.709, the u
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from functools import cache, lru_cache
 from typing import Any, Literal
 
@@ -19,6 +19,9 @@ _LARGEST = 65504.0
 """The largest half float: what passes keep."""
 _LEAST_ALPHA = float(np.finfo(np.float32).tiny)
 """Below this alpha, division would amplify rounding. OpenImageIO's colorconvert has the same limit."""
+
+_BAND_NUMBERS = 1 << 20
+"""Numbers for which another thread is worth its start, 0.1 ms: even a plain curve takes 5 ms for so many."""
 
 Array = np.ndarray
 
@@ -108,9 +111,16 @@ def to_working(rgb: Array, file_space: FileSpace, manager: ColorManager) -> Arra
 def from_working(rgb: Array, space: OcioColorSpace, manager: ColorManager) -> Array:
     """Working-space colors [..., 3] in another space, float32. Raises as `to_working`."""
     converted = np.array(rgb, dtype=np.float32, order="C")
-    if not space.data and space != manager.working:
-        apply_processor(_make_exact(manager.make_processor(manager.working, space)), converted)
+    if processor := find_writing_processor(space, manager):
+        apply_processor(processor, converted)
     return converted
+
+
+def find_writing_processor(space: OcioColorSpace, manager: ColorManager) -> Any | None:
+    """What turns working-space colors into those of a space; None where they are the same. Raises as `to_working`."""
+    if space.data or space == manager.working:
+        return None
+    return _make_exact(manager.make_processor(manager.working, space))
 
 
 def decode_srgb(encoded: Array) -> Array:
@@ -136,14 +146,14 @@ def unpremultiply(array: Array) -> Array:
     """A copy of pixels [h, w, 3 or 4] in float32, finite and within half floats, color not multiplied by alpha."""
     pixels = np.array(array, dtype=np.float32)
     np.nan_to_num(pixels, copy=False, nan=0.0, posinf=_LARGEST, neginf=-_LARGEST)
-    rgb = pixels[..., :3]
     if pixels.shape[2] == 4:
         alpha = pixels[..., 3]
         divisor = np.where(alpha > 0.0, alpha, np.float32(1.0))
         with np.errstate(over="ignore"):
-            for channel in range(3):  # numpy divides six times as fast one by one, and without a mask
+            for channel in range(3):  # numpy is six times as fast one by one, and without a mask
                 pixels[..., channel] /= divisor
-    np.clip(rgb, -_LARGEST, _LARGEST, out=rgb)
+    for channel in range(3):
+        np.clip(pixels[..., channel], -_LARGEST, _LARGEST, out=pixels[..., channel])
     return pixels
 
 
@@ -202,15 +212,32 @@ def apply_processor(processor: Any, rgb: Array) -> None:
 
     OpenColorIO releases Python's lock meanwhile, so threads are enough.
     """
-    from concurrent.futures import ThreadPoolExecutor
+    bands = np.array_split(rgb, max(1, min(available_cores(), rgb.size // _BAND_NUMBERS)))
+    run_side_by_side(processor.applyRGB, [band for band in bands if band.size])
 
-    cores = min(available_cores(), rgb.shape[0])
+
+def apply_to_rgb(processor: Any, pixels: Array) -> None:
+    """Transform the first three channels of float32 pixels [h, w, 3 or 4] in place."""
+    rgb = np.empty((*pixels.shape[:2], 3), np.float32)
+    for channel in range(3):  # numpy copies six times as fast one by one
+        rgb[..., channel] = pixels[..., channel]
+    apply_processor(processor, rgb)
+    for channel in range(3):
+        pixels[..., channel] = rgb[..., channel]
+
+
+def run_side_by_side(work: Callable[[Any], object], parts: Collection[Any]) -> None:
+    """Work on parts of a picture, on as many threads as there are cores. Raises what the work raises."""
+    cores = min(available_cores(), len(parts))
     if cores < 2:
-        processor.applyRGB(rgb)
+        for part in parts:
+            work(part)
         return
-    bands = [band for band in np.array_split(rgb, cores) if band.size]
+    from concurrent.futures import ThreadPoolExecutor  # an import that most commands can spare
+
     with ThreadPoolExecutor(cores) as pool:
-        list(pool.map(processor.applyRGB, bands))
+        for _ in pool.map(work, parts):
+            pass
 
 
 def to_three_channels(array: Array) -> Array:
