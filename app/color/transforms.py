@@ -219,11 +219,15 @@ def apply_processor(processor: Any, rgb: Array) -> None:
 def apply_to_rgb(processor: Any, pixels: Array) -> None:
     """Transform the first three channels of float32 pixels [h, w, 3 or 4] in place."""
     rgb = np.empty((*pixels.shape[:2], 3), np.float32)
-    for channel in range(3):  # numpy copies six times as fast one by one
-        rgb[..., channel] = pixels[..., channel]
+    copy_rgb(pixels, rgb)
     apply_processor(processor, rgb)
+    copy_rgb(rgb, pixels)
+
+
+def copy_rgb(source: Array, target: Array) -> None:
+    """Copy the first three channels: of pixels with four, numpy copies six times as fast one by one."""
     for channel in range(3):
-        pixels[..., channel] = rgb[..., channel]
+        target[..., channel] = source[..., channel]
 
 
 def run_side_by_side(work: Callable[[Any], object], parts: Collection[Any]) -> None:

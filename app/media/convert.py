@@ -17,6 +17,7 @@ from ..color.management import ColorManager, get_default_color_manager
 from ..color.transforms import (
     Array,
     convert_premultiplied,
+    copy_rgb,
     is_in_working_space,
     is_linear,
     to_float,
@@ -153,10 +154,9 @@ def _split_alpha(block: Array, layer: Layer) -> tuple[Array, Array | None]:
 
 def _join_rgba(rgb: Array, alpha: Array | None) -> Array:
     """Color and alpha in one array, opaque without alpha."""
-    rgba = np.ones((*rgb.shape[:2], 4), rgb.dtype)
-    rgba[..., :3] = rgb
-    if alpha is not None:
-        rgba[..., 3:] = alpha
+    rgba = np.empty((*rgb.shape[:2], 4), rgb.dtype)
+    copy_rgb(rgb, rgba)
+    rgba[..., 3:] = rgb.dtype.type(1) if alpha is None else alpha
     return rgba
 
 

@@ -50,6 +50,10 @@ _PNG_LEVEL = 4
 """Of zlib's 1 to 9. Against its own choice, 6, photographs and screens take 0.3 to 0.75 of the processor time and are 3
 to 8 % larger, measured at 1632x1224, dithered. Level 5 takes 0.5 to 0.85, and they are 1 to 4 % larger."""
 
+_PNG_FILTERS = 16 | 32
+"""Sub and Up of PNG, by libpng's numbers: what each row is tried with. Against all five, pictures take 0.53 to 0.87 of
+the time of a processor and are 0 to 2 % larger, screens up to 5 %: measured with 15 pictures of 0.1 to 2 MP."""
+
 _STORED = {"uint8": "uint8", "uint16": "uint16", "float32": "float"}
 
 
@@ -279,6 +283,7 @@ def _encode_picture(
         spec.attribute("compression", compression)
     if format == "png":
         spec.attribute("png:compressionLevel", _PNG_LEVEL)
+        spec.attribute("png:filter", _PNG_FILTERS)
     if format == "jpeg":
         spec.attribute("compression", "jpeg:95")
         spec.attribute("jpeg:subsampling", "4:4:4")

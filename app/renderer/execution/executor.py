@@ -362,8 +362,7 @@ class Executor:
         """The pixels of a surface as [height, width, channels], in memory that `arrays` lends."""
         surface = plan.surfaces[number]
         width, height = surface.size
-        if self.device.target.software:  # llvmpipe may read a texture before the draws into it are done
-            self.device.finish()
+        self.device.finish()  # other threads go on meanwhile, and llvmpipe may read before the draws are done
         shape = (height, width, surface.components)
         pixels = arrays.take(shape, np.float16 if surface.depth == "f2" else np.float32)
         self.find_texture(plan, number).handle.read_into(pixels)

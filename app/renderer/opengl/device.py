@@ -26,6 +26,7 @@ from ...resources.color_program import LookupTable
 from ...resources.machine import describe_processor
 from ...resources.mesh import Mesh
 from ..device import Bindings, DeviceProgram, DeviceResource, DeviceTexture, PixelRect, ProgramVariant, TextureDepth
+from .functions import OpenGLFunctions
 from .mesh import OpenGLMesh, create_mesh
 from .precompiler import Precompiler
 from .program import OpenGLProgram, create_compute_program, create_program
@@ -168,7 +169,7 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
         for unit, texture in enumerate(_handles(targets), first):
             texture.bind_to_image(unit, read=False, write=True)
         program.set("first_row", first_row)
-        handle.run(*groups)
+        self._functions.dispatch(handle, groups)
         self.context.memory_barrier()
 
     def clear(self, texture: DeviceTexture, color: tuple[float, float, float, float]) -> None:
@@ -186,14 +187,14 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
         return pixels
 
     def finish(self) -> None:
-        self.context.finish()
+        self._functions.finish()
 
     def time(self, work: Callable[[], None]) -> float:
         if self.target.software:  # its timer queries leave most of the work out
-            self.context.finish()
+            self.finish()
             started = time.perf_counter()
             work()
-            self.context.finish()
+            self.finish()
             return time.perf_counter() - started
         with self._timer:
             work()
@@ -242,6 +243,10 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
     def _idle(self) -> moderngl.Framebuffer:
         """What stays bound between draws: a target must not, as it may be released before the next draw."""
         return self.context.framebuffer([self.context.texture((1, 1), 1)])
+
+    @cached_property
+    def _functions(self) -> OpenGLFunctions:
+        return OpenGLFunctions(self.context)
 
     @cached_property
     def _interpolation(self) -> moderngl.Sampler:
