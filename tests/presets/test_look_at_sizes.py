@@ -26,6 +26,7 @@ from halation.nodes import Kind
 from halation.presets import paths
 from halation.renderer import FrameRenderer, Renderer, RenderRequest
 from halation.resources.sandbox import UNRESTRICTED
+from scipy.ndimage import gaussian_filter1d
 from selection import list_cases
 
 Array = np.ndarray
@@ -117,6 +118,35 @@ def find_frequency(light: Array) -> float:
     frequency = np.hypot(down, across)
     power[(frequency < 20.0) | (frequency > 120.0)] = 0.0
     return float(frequency.flat[power.argmax()])
+
+
+def count_lines(light: Array) -> int:
+    """How many level lines at equal distances the height holds: the harmonic product spectrum (Noll 1970).
+
+    Thin lines have overtones nearly as strong as their fundamental, so that the strongest frequency may be any of them.
+    The fundamental is the one whose first four multiples are strong together.
+    """
+    profile = encode(light).mean(axis=(1, 2))
+    height = len(profile)
+    profile = (profile - gaussian_filter1d(profile, height / 20.0)) * np.hanning(height)
+    power = np.abs(np.fft.rfft(profile))
+    counts = np.arange(5, height // 8)
+    return int(counts[np.prod([power[k * counts] for k in (1, 2, 3, 4)], axis=0).argmax()])
+
+
+@pytest.mark.parametrize("count", [7, 10, 23])
+def test_lines_are_counted_and_not_their_overtones(count: int) -> None:
+    """Thin lines over large soft shapes."""
+    down, across = np.meshgrid((np.arange(270) + 0.5) / 270, (np.arange(480) + 0.5) / 270, indexing="ij")
+    lines = (down * count) % 1.0 < 0.1
+    light = 0.3 + 0.2 * np.sin(3.0 * down + 2.0 * across) + 0.3 * lines
+    assert count_lines(np.dstack([light] * 3)) == count
+
+
+@pytest.mark.parametrize("height", [270, 540])
+def test_a_blueprint_has_as_many_lines_at_each_size(renderer: Renderer, height: int) -> None:
+    squares = load_preset("blueprint").nodes["squares"].size
+    assert count_lines(render_at(renderer, "blueprint", height, 540 // height)) == 1080 // squares
 
 
 @pytest.mark.parametrize("name", list_cases(SMOOTH[::2], SMOOTH[1::2]))
