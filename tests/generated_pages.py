@@ -15,11 +15,11 @@ import api_reference
 import node_reference
 from command_reference import fill_tables
 from halation.cli import manual
-from halation.cli.facts import format_value
 from halation.graph.expressions.functions import FUNCTIONS
 from halation.lint.checking import RULES
 from halation.nodes import LIGHTS, built_in_nodes
-from menu_words import PROGRAMS
+from halation.reference.facts import format_value
+from halation.reference.program_words import PROGRAMS
 from message_catalogue import renew_catalogue
 
 ROOT = Path(__file__).parents[1]
@@ -108,12 +108,12 @@ def write_node_names() -> str:
 
 
 def _link_nodes(wanted: str) -> str:
-    """Links to the nodes that menu_words.py names: one with a mode, or several."""
+    """Links to the nodes that program_words.py names: one with a mode, or several."""
     node, _, mode = wanted.partition(":")
     if node in ("input", "output"):
         return f"[{mode.lower()} {node}](format.md#inputs-and-outputs) of the graph"
     ids = node.split()
-    assert set(ids) <= built_in_nodes().keys(), f"menu_words.py names a node that does not exist: {wanted}"
+    assert set(ids) <= built_in_nodes().keys(), f"program_words.py names a node that does not exist: {wanted}"
     return ", ".join(f"[{id}{': ' if mode else ''}{mode}](nodes.md#{id})" for id in ids)
 
 

@@ -42,7 +42,7 @@ from halation.resources.sandbox import UNRESTRICTED
 ROOT = Path(__file__).parents[1]
 FOLDER = ROOT / "app" / "language" / "catalogue"
 TEMPLATE = FOLDER / "halation.pot"
-ROOMS = ("editor", "authoring")
+ROOMS = ("editor", "authoring", "reference")
 """The floors whose texts are translated."""
 
 FUNCTIONS = {"translate": 1, "translate_label": 1, "mark": 1, "translate_plural": 2, "mark_plural": 2}

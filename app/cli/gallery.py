@@ -58,7 +58,7 @@ def gallery(
     from halation.presets import paths
 
     from ..media.comparison.contact_sheet import write_sheet
-    from .specimen import drawable_outputs
+    from ..reference.specimen import drawable_outputs
 
     sandbox = read_process_sandbox()
     rows: list[dict[str, object]] = []
@@ -141,7 +141,7 @@ def make_node_sheet(renderer: Renderer, step: Step = lambda name: None, ids: tup
 
     from ..media.comparison.category_colors import category_color
     from ..media.comparison.contact_sheet import make_grouped_sheet
-    from .specimen import drawable_outputs
+    from ..reference.specimen import drawable_outputs
 
     nodes = [node for id, node in catalogue().items() if drawable_outputs(node) and (not ids or id in ids)]
     groups: dict[str, dict[str, Array]] = {node.category: {} for node in nodes}
@@ -155,7 +155,7 @@ def make_node_sheet(renderer: Renderer, step: Step = lambda name: None, ids: tup
 
 def render_node(node: type[Node], renderer: Renderer, sample: Path) -> Array:
     """The first image that a node makes of the sample, else its data made visible, in display colors."""
-    from .specimen import show_on_sample
+    from ..reference.specimen import show_on_sample
 
     return render_specimen(node, show_on_sample(node, sample), renderer, sample)
 
@@ -170,8 +170,8 @@ def render_specimen(
     """The same of a graph that `show_on_sample` made, with other values or inputs."""
     from halation.nodes import Kind
 
+    from ..reference.specimen import CANVAS, name_specimen, sample_graph
     from ..renderer import RenderRequest
-    from .specimen import CANVAS, name_specimen, sample_graph
 
     with name_specimen(node):
         outputs = renderer.render(graph, RenderRequest(inputs))

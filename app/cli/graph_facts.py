@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..reference.facts import default_text, format_value, soft_range
 from ..resources.sandbox import Sandbox
-from .facts import default_text, format_value, soft_range
 from .outcome import write_count
 
 if TYPE_CHECKING:

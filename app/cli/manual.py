@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from .facts import default_text, hard_range, node_doc, output_type, socket_note, socket_type, soft_range
+from ..reference.facts import default_text, hard_range, node_doc, output_type, socket_note, socket_type, soft_range
 
 if TYPE_CHECKING:
     from halation.nodes import Node, Socket, Value

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..resources.sandbox import Sandbox
-from .facts import (
+from ..reference.facts import (
     default_text,
     hard_range,
     node_doc,
@@ -20,6 +19,7 @@ from .facts import (
     socket_type,
     soft_range,
 )
+from ..resources.sandbox import Sandbox
 from .options import AsJson
 from .outcome import print_json, print_note
 from .plugins import describe_refused_plugins, print_refused_plugins

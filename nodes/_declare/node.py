@@ -266,7 +266,7 @@ class Source(Filter, abstract=True):
 
 
 class Reader(Source):
-    """A source that reads image files. In their names `####`, `%04d` or `$F4` stands for the frame.
+    """A source that reads picture files. In their names `####`, `%04d` or `$F4` stands for the frame.
 
     A folder is the sequence in it.
     """

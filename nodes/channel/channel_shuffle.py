@@ -22,7 +22,7 @@ Pick = Annotated[
 
 
 class ChannelShuffle(Pointwise):
-    """Rearrange channels of one or two images. Values are copied as they are, without regard to alpha."""
+    """Rearrange channels of one or two pictures. Values are copied as they are, without regard to alpha."""
 
     aliases = (
         "shuffle", "shuffle copy", "swizzle", "copy channels", "channel copy", "copy", "channel booleans",
@@ -30,7 +30,7 @@ class ChannelShuffle(Pointwise):
     )  # fmt: skip
 
     image = Image()
-    other = Image(0.0, doc="A second image to take channels from.")
+    other = Image(0.0, doc="A second picture to take channels from.")
     red: Pick = "red"
     green: Pick = "green"
     blue: Pick = "blue"

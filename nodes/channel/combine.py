@@ -2,7 +2,7 @@ from .._declare import Field, Image, OutputSocket, Pointwise
 
 
 class Combine(Pointwise):
-    """Make an image from up to four channels, which are taken as they are (premultiplied)."""
+    """Make a picture from up to four channels, which are taken as they are (premultiplied)."""
 
     aliases = (
         "combine color", "combine rgb", "combine rgba", "join channels", "channel combiner", "merge channels",

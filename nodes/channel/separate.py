@@ -2,7 +2,7 @@ from .._declare import Field, Image, OutputSocket, Pointwise
 
 
 class Separate(Pointwise):
-    """Split an image into its four channels, which are given as they are (premultiplied)."""
+    """Split a picture into its four channels, which are given as they are (premultiplied)."""
 
     aliases = (
         "separate color", "separate rgb", "separate rgba", "split channels", "split rgb", "channel split",

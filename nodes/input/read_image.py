@@ -5,7 +5,7 @@ from .._declare import Doc, Draw, Drawn, Field, File, OfSpace, OutputSocket, Rea
 
 
 class ReadImage(Reader):
-    """Read one layer of an image file.
+    """Read one layer of a picture file.
 
     `out` is the layer as color, `field` its first channel as data (depth, a mask), `vector` its first three channels as
     data (normals, positions). It reads all files that OpenImageIO reads. A layer can be named in any of the usual ways

@@ -38,7 +38,7 @@ class Merge(Pointwise):
     """Combine the foreground `a` with the background `b`. The result has the size of `b`.
 
     The modes from over to plus are the operators of Porter and Duff (1984). The others blend the colors where both
-    images cover, by the W3C's Compositing and Blending Level 1: `a (1 - b.alpha) + b (1 - a.alpha) + a.alpha b.alpha
+    pictures cover, by the W3C's Compositing and Blending Level 1: `a (1 - b.alpha) + b (1 - a.alpha) + a.alpha b.alpha
     blend(b, a)`. Within 0..1 they are the formulas of the W3C, which define no brighter light; for that the formulas
     are continued without a jump, as the comments in the shader say.
     """

@@ -4,7 +4,7 @@ from .._declare import Image, Pointwise, Slider
 
 
 class MixImages(Pointwise):
-    """Mix two images, as a dissolve: `a (1 - factor) + b factor`. Link a Field to the factor to mix by a mask."""
+    """Mix two pictures, as a dissolve: `a (1 - factor) + b factor`. Link a Field to the factor to mix by a mask."""
 
     aliases = (
         "mix", "dissolve", "cross dissolve", "key mix", "keymix", "crossfade", "blend", "fade", "lerp", "interpolate",

@@ -43,7 +43,7 @@ class TimeSpeed(Filter):
     ] = 1.0
     between: Annotated[
         Literal["nearest", "blend"],
-        Doc("Between two frames of an image, show the nearest one or dissolve. Fields and vectors are never mixed."),
+        Doc("Between two frames of a picture, show the nearest one or dissolve. Fields and vectors are never mixed."),
     ] = "nearest"
 
     out = OutputSocket(Image())

@@ -26,10 +26,10 @@ sys.path.append(str(Path(__file__).parents[1]))
 import numpy as np
 from devices import open_renderer
 from halation import document
-from halation.cli.specimen import drawable_outputs, name_specimen, show_on_sample
 from halation.graph import Graph
 from halation.nodes import catalogue
 from halation.presets import paths, sample
+from halation.reference.specimen import drawable_outputs, name_specimen, show_on_sample
 from halation.renderer import FrameRenderer, Renderer, RenderRequest
 from halation.resources.sandbox import UNRESTRICTED
 

@@ -15,11 +15,12 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from halation import document, nodes, presets
-from halation.cli import gallery, specimen
+from halation.cli import gallery
 from halation.graph import Graph, problems
 from halation.media.comparison.contact_sheet import write_sheet
 from halation.nodes import Kind, Node, Source, catalogue
 from halation.presets import sample
+from halation.reference import specimen
 from halation.renderer import Renderer
 from halation.resources.sandbox import UNRESTRICTED
 

@@ -11,11 +11,11 @@ from collections.abc import Iterator
 
 import pytest
 from halation import document
-from halation.cli.specimen import drawable_outputs, plan_node
 from halation.compiler import NULL, Plan, Request, Target, compile_graph
 from halation.inputs.provider import MediaProvider
 from halation.nodes import catalogue
 from halation.presets import paths
+from halation.reference.specimen import drawable_outputs, plan_node
 from halation.resources.sandbox import UNRESTRICTED
 from selection import list_cases
 

@@ -10,6 +10,7 @@ from halation.editor.dialogs.panel_page import PARAGRAPHS
 from halation.editor.shared.window_commands import PanelTitle
 from halation.graph import Graph, Port, signature
 from halation.nodes import catalogue
+from halation.reference.node_page import find_main_value, list_steps
 
 BLOOM = next(path for path in presets.paths() if path.stem == "soft_bloom")
 
@@ -33,7 +34,16 @@ def test_the_page_of_the_selected_node_with_pictures_before_and_after(gui) -> No
         ui.wait(3)
         before, after = ui.editor.places["picture Before"], ui.editor.places["picture After"]
         assert before[2] < after[0] and before[3] - before[1] > 100.0
+        strip = ui.editor.strip
+        assert strip.numbers == tuple(list_steps(find_main_value(catalogue()["bloom"])))
+        ui.until(lambda: all(strip.find(index) for index in range(len(strip.numbers))))
+        ui.wait(2)
+        assert ui.editor.places["strip 0"][2] < ui.editor.places["strip 1"][0]
         ui.shot("node_page.png")
+        ui.move("dialog Node", (0.5, 0.5))
+        ui.wheel(-50.0)
+        ui.wait(3)
+        ui.shot("node_page_end.png")
         ui.keys("Escape")
         ui.wait(3)
         assert not ui.editor.dialogs.any

@@ -18,8 +18,8 @@ DATA = ("nodes", "shaders", "presets")
 
 FLOORS = (
     "errors", "version", "language", "glsl", "resources", "custom_nodes", "graph", "document", "compiler", "color",
-    "media", "render_layers", "inputs", "lint", "renderer", "scripting", "__init__", "serving", "cluster", "watch",
-    "regression", "export", "fit", "desktop", "authoring", "editor", "cli",
+    "media", "render_layers", "inputs", "reference", "lint", "renderer", "scripting", "__init__", "serving", "cluster",
+    "watch", "regression", "export", "fit", "desktop", "authoring", "editor", "cli",
 )  # fmt: skip
 """Parts of the machine from the ground up. `__init__` is the public face of the engine: it stands on the renderer."""
 

@@ -107,7 +107,7 @@ UNRESTRICTED = {
     "cli/burn_in.py": "a preset",
     "cli/demo.py": "presets",
     "cli/gallery.py": "presets",
-    "cli/specimen.py": "a provider that reads no files",
+    "reference/specimen.py": "a provider that reads no files",
     "cli/thumbnail.py": "the picture that it writes where the file manager says",
     "desktop/installation.py": "files of Halation, in the folder of the desktop",
     "color/management.py": "the config of $OCIO, which the user trusts",

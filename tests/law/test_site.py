@@ -10,12 +10,13 @@ import re
 import sys
 import tomllib
 from pathlib import Path
+from types import MappingProxyType
 
 import pytest
 from browser import CHROMIUM, Browser
 from halation.nodes import Filter, Pointwise, built_in_nodes
 from halation.presets import paths
-from node_examples import EXAMPLES, UNCHANGED
+from halation.reference.examples import EXAMPLES
 from site_check import (
     FIRST_PAGE_LIMIT,
     find_faults_in_html,
@@ -27,6 +28,17 @@ from site_check import (
 
 ROOT = Path(__file__).parents[2]
 SITE = ROOT / "tests/site"
+UNCHANGED = MappingProxyType(
+    {
+        "lut_file": "it needs a file",
+        "premultiply": "the sample covers every pixel",
+        "sanitize": "the sample is finite",
+        "select": "it passes one of its pictures on",
+        "temporal_aa": "it joins earlier frames, which a single picture has not",
+        "unpremultiply": "the sample covers every pixel",
+    }
+)
+"""Type of node -> why its picture is that before it."""
 
 
 @pytest.fixture(scope="module")

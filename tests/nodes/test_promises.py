@@ -12,12 +12,12 @@ import pytest
 from devices import open_renderer
 from exr_files import write_exr
 from halation import document, media
-from halation.cli.specimen import drawable_outputs, show_on_sample
 from halation.color.transforms import decode_srgb
 from halation.compiler import load_library
 from halation.media.comparison.data_range import find_data_range
 from halation.nodes import Kind, Node, Pointwise, built_in_nodes
 from halation.presets import sample
+from halation.reference.specimen import drawable_outputs, show_on_sample
 from halation.renderer import Renderer, RenderRequest
 from halation.resources.sandbox import UNRESTRICTED
 

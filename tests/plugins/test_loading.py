@@ -11,11 +11,11 @@ from pathlib import Path
 
 import pytest
 from halation import document
-from halation.cli.specimen import plan_node
 from halation.compiler import load_library
 from halation.errors import GraphError, ShaderError
 from halation.graph import Graph, Port, Unknown, problems
 from halation.nodes import catalogue, plugins
+from halation.reference.specimen import plan_node
 from halation.resources.sandbox import UNRESTRICTED
 
 NODE = '''

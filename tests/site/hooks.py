@@ -14,8 +14,9 @@ from textwrap import shorten
 from typing import Any
 
 from halation.nodes import built_in_nodes
+from halation.reference.node_page import find_users
 from mkdocs.structure.files import File, Files
-from node_pages import find_users, measure_times, render_pictures, write_node_page
+from node_pages import measure_times, render_pictures, write_node_page
 from preset_pages import picture_files, write_gallery
 
 ROOT = Path(__file__).parents[2]

@@ -18,7 +18,7 @@ def hint_at_beginning(context: CanvasContext) -> tuple[str, ...]:
     return (
         translate("An empty graph"),
         translate("{keys} adds a node", keys=keys),
-        translate("Drop an image or a graph file here"),
+        translate("Drop a picture or a graph file here"),
     )
 
 

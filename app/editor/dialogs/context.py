@@ -9,6 +9,7 @@ from ..toolkit.context import PanelContext
 
 if TYPE_CHECKING:
     from ...authoring.preview import Preview
+    from ...authoring.preview.value_strip import ValueStrip
     from ...authoring.session import Session
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
@@ -25,6 +26,7 @@ class DialogContext(PanelContext):
     dialogs: Dialogs
     actions: Actions
     clipboard: SystemText
+    strip: ValueStrip
 
     @classmethod
     def compose(cls, services: Services) -> DialogContext:
@@ -37,4 +39,5 @@ class DialogContext(PanelContext):
             services.dialogs,
             services.actions,
             services.clipboard,
+            services.strip,
         )

@@ -1,7 +1,8 @@
-"""The page of a node: what it does, its pictures before and after, and all of its sockets and values.
+"""The page of a node: what it does, its pictures before and after, its main value from low to high, all of its sockets
+and values, what it costs, the presets that use it, and its names in other programs.
 
-Everything on it comes from the declaration of the node, as docs/nodes.md does, so that no page is missing or out of
-date; the pictures are those of the graph that is open.
+Everything on it comes from the declaration of the node and from what the site says about it, so that no page is missing
+or out of date. Before and after are pictures of the graph that is open; the strip shows the sample, as the site does.
 """
 
 from __future__ import annotations
@@ -15,8 +16,10 @@ from imgui_bundle import ImVec2, imgui
 from ...authoring.preview.preview import Preview
 from ...graph import INPUTS, Graph, Port, Unknown, signature
 from ...language.translation import translate
+from ...reference.node_page import describe_cost, describe_example, find_main_value, find_users, list_names
+from ...reference.specimen import CANVAS
 from ..fields.numbers import describe_default, describe_value
-from ..shared.declared_words import describe_type, head_type, name_value
+from ..shared.declared_words import describe_type, head_type, name_preset, name_value
 from ..theme.style import ui_scale, vec4
 from ..toolkit.buttons import close_button
 from ..toolkit.dialogs import backdrop, dialog, escape_pressed
@@ -36,6 +39,8 @@ class NodePage:
 
     def __init__(self, context: DialogContext) -> None:
         self._context = context
+        self._costs: dict[type[Node], str] = {}
+        """What each type costs: to plan it takes some milliseconds."""
 
     def draw(self) -> None:
         """Draw the page, if it is open."""
@@ -61,6 +66,8 @@ class NodePage:
             draw_wrapped(palette.text, paragraph)
             imgui.spacing()
         self._draw_pictures(id, face)
+        if isinstance(item, Node):
+            self._draw_strip(type(item))
         inputs = [
             (name_value(name), translate(socket.doc) or translate(socket.kind, "kind"))
             for name, socket in face.unfolded_inputs.items()
@@ -80,7 +87,59 @@ class NodePage:
             (translate("Outputs"), outputs),
         ):
             self._draw_rows(title, rows)
+        if isinstance(item, Node):
+            self._draw_reference(id, type(item))
         imgui.end_child()
+
+    def _draw_strip(self, node: type[Node]) -> None:
+        """Draw the node on the sample with its main value from low to high, as far as the pictures are there."""
+        strip, value = self._context.strip, find_main_value(node)
+        strip.want(node)
+        strip.is_shown = True
+        if value is None or not strip.numbers:
+            return
+        imgui.spacing()
+        draw_dim(self._context, translate("{name} from low to high", name=name_value(value.label or value.name)))
+        gap = imgui.get_style().item_spacing.x
+        width = (imgui.get_content_region_avail().x - gap * (len(strip.numbers) - 1)) / len(strip.numbers)
+        for index, number in enumerate(strip.numbers):
+            if index:
+                imgui.same_line(0.0, gap)
+            imgui.begin_group()
+            texture = strip.find(index)
+            across, down = texture.size if texture else CANVAS
+            size = ImVec2(width, width * down / across)
+            if texture:
+                imgui.image(imgui.ImTextureRef(texture.native_handle), size)
+            else:
+                imgui.dummy(size)
+            draw_dim(self._context, f"{number:g}")
+            imgui.end_group()
+            corner, end = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+            self._context.places[f"strip {index}"] = (corner.x, corner.y, end.x, end.y)
+
+    def _draw_reference(self, id: str, node: type[Node]) -> None:
+        """Draw what the declaration does not say: cost, presets and names in other programs."""
+        cost, presets = self._describe_cost(id, node), find_users().get(node.id, ())
+        self._draw_text(translate("What it costs"), cost)
+        self._draw_text(translate("Presets that use it"), ", ".join(map(name_preset, presets)))
+        self._draw_rows(translate("In other programs"), list_names(node))
+
+    def _describe_cost(self, id: str, node: type[Node]) -> str:
+        """The cost of the node on the sample, and the time that it took in the graph that is open, if that is known."""
+        if node not in self._costs:
+            self._costs[node] = " ".join(filter(None, (_describe_values(node), describe_cost(node))))
+        timing = self._context.preview.timings.get("/".join((*self._context.session.place, id)))
+        if timing is None:
+            return self._costs[node]
+        here = translate("In this graph it took {milliseconds:.1f} ms.", milliseconds=1e3 * timing.seconds)
+        return f"{self._costs[node]} {here}"
+
+    def _draw_text(self, title: str, text: str) -> None:
+        if text:
+            imgui.spacing()
+            imgui.text_colored(vec4(self._context.palette.accent), title)
+            draw_wrapped(self._context.palette.dim, text)
 
     def _draw_pictures(self, id: str, face: Signature) -> None:
         """Draw what goes into the first input, and what comes out, where the graph has pictures of both."""
@@ -119,6 +178,12 @@ class NodePage:
                 imgui.table_next_column()
                 draw_wrapped(self._context.palette.dim, text)
             imgui.end_table()
+
+
+def _describe_values(node: type[Node]) -> str:
+    """The values of the strip and of the cost, where they are not the defaults."""
+    values = describe_example(node).replace("`", "")
+    return translate("At its defaults it changes nothing. Shown is {values}.", values=values) if values else ""
 
 
 def describe_item(item: Item) -> tuple[str, ...]:

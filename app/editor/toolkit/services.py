@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from ...authoring.preferences import PreferenceStore
     from ...authoring.preview import Preview
     from ...authoring.preview.pass_pictures import PassPictures
+    from ...authoring.preview.value_strip import ValueStrip
     from ...authoring.recovery.recovery import RecoveryFile
     from ...authoring.session import Session
     from ...renderer.viewing.display import Display
@@ -50,6 +51,7 @@ class Services:
     renders: RenderOverviews
     coloring: ColorFallback
     passes: PassPictures
+    strip: ValueStrip
     log: Log = field(default_factory=Log)
     shaders: ShaderFiles = field(default_factory=ShaderFiles)
     library: PresetLibrary = field(default_factory=PresetLibrary)

@@ -358,7 +358,7 @@ class Viewer:
         if port is not None and port.node == OUTPUTS:
             return translate("Nothing is linked to the output '{socket}' yet.", socket=port.socket)
         keys = display_shortcut(self._context.actions.shortcut("node.add"))
-        return translate("Nothing to show yet: add a node ({keys} over the graph), or drop an image here.", keys=keys)
+        return translate("Nothing to show yet: add a node ({keys} over the graph), or drop a picture here.", keys=keys)
 
     def _time(self, images: _FrameImages) -> None:
         """Measure how long pictures take, for the info line and the proxy of drags."""

@@ -13,6 +13,7 @@ from ...authoring.preferences import PreferenceStore, state_folder
 from ...authoring.preview import Preview
 from ...authoring.preview.color_fallback import ColorFallback
 from ...authoring.preview.pass_pictures import PassPictures
+from ...authoring.preview.value_strip import ValueStrip
 from ...authoring.recovery.recovery import RecoveryFile
 from ...authoring.render_queue import RenderQueue
 from ...authoring.session import Session
@@ -66,6 +67,7 @@ def assemble(device: Device, sandbox: Sandbox, state: Path | None = None) -> Edi
         renders,
         ColorFallback(sandbox),
         PassPictures(renderer),
+        ValueStrip(renderer, display),
         log,
     )
 
@@ -101,6 +103,7 @@ def take_apart(editor: Editor) -> None:
     editor.recovery.close(keep=not editor.commands.closing and editor.session.dirty)
     editor.store.flush()
     editor.probe.close()
+    editor.strip.close()
     editor.display.close()
     editor.passes.close()
     editor.preview.close()

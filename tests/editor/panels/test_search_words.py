@@ -16,7 +16,7 @@ from halation.editor.shared.entries import (
     rank_entries,
 )
 from halation.nodes import catalogue
-from menu_words import MENU_WORDS
+from halation.reference.program_words import MENU_WORDS
 
 ENTRIES = (
     *node_entries(catalogue()),

@@ -1,4 +1,4 @@
-"""Names of the effects of ReShade, and the nodes that somebody who types them looks for: see menu_words.py."""
+"""Names of the effects of ReShade, and the nodes that somebody who types them looks for: see program_words.py."""
 
 from __future__ import annotations
 

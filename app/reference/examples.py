@@ -1,4 +1,4 @@
-"""Values with which pages show a node whose defaults change nothing, and why some pictures stay as they are."""
+"""Values with which pages show a node whose defaults change nothing."""
 
 from __future__ import annotations
 
@@ -32,15 +32,3 @@ EXAMPLES: Mapping[str, Mapping[str, Any]] = MappingProxyType(
     }
 )
 """Type of node -> values that differ from its defaults. Chosen by eye."""
-
-UNCHANGED = MappingProxyType(
-    {
-        "lut_file": "it needs a file",
-        "premultiply": "the sample covers every pixel",
-        "sanitize": "the sample is finite",
-        "select": "it passes one of its pictures on",
-        "temporal_aa": "it joins earlier frames, which a single picture has not",
-        "unpremultiply": "the sample covers every pixel",
-    }
-)
-"""Type of node -> why its picture is that before it."""

@@ -6,7 +6,7 @@ with that mode, `output:Image` an output of the graph.
 
 from __future__ import annotations
 
-from effect_words import RESHADE
+from .effect_words import RESHADE
 
 BLENDER = {
     "Image": "read_image",

@@ -1,0 +1,107 @@
+"""A strip of small pictures: a node on the sample, with its main value from low to high."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from halation.nodes import Node
+
+from ...errors import HalationError
+from ...graph import OUTPUTS, Graph, Port
+from ...reference.node_page import find_main_value, list_steps, make_example
+from ...reference.specimen import NODE, drawable_outputs, name_specimen
+from ...renderer import DeviceTexture, Display, Renderer
+from .picture_job import PictureJob
+from .request import PreviewRequest
+from .thumbnails import Thumbnails, list_thumbnail_sources
+
+_OUTPUT = "strip"
+_DRAWN_LIKE_NODES = 1.0
+"""The scale of the picture from which a small one is made: the sample is small itself."""
+
+
+class ValueStrip:
+    """Draws a strip while somebody looks at it, one part of a pass per `work`."""
+
+    def __init__(self, renderer: Renderer, display: Display) -> None:
+        self._renderer, self._thumbnails = renderer, Thumbnails(renderer, display)
+        self._steps: Iterator[None] | None = None
+        self._job: PictureJob | None = None
+        self.node: type[Node] | None = None
+        self.numbers: tuple[float, ...] = ()
+        """The numbers of the value, from low to high; none for a node without one."""
+        self.is_shown = False
+        """True if somebody has looked at the strip since the last frame."""
+
+    def want(self, node: type[Node]) -> None:
+        """Say whose strip is shown. The same again is free."""
+        if node is self.node:
+            return
+        self._stop()
+        self._thumbnails.clear()
+        value, self.node = find_main_value(node), node
+        self.numbers = tuple(list_steps(value)) if value and drawable_outputs(node) else ()
+        self._steps = self._draw(node) if self.numbers else None
+
+    def work(self) -> bool:
+        """Do the next step; True while there are more. What cannot be drawn has no picture."""
+        if self._steps is None:
+            return False
+        try:
+            next(self._steps)
+        except StopIteration:
+            self._steps = None
+        except HalationError:
+            self._stop()
+        return self._steps is not None
+
+    def find(self, index: int) -> DeviceTexture | None:
+        """The picture for a number, None where it is not drawn yet."""
+        found = self._thumbnails.find(_name_slot(index), lambda path: None)
+        return found[0] if found else None
+
+    def close(self) -> None:
+        """Give back what the device holds."""
+        self._stop()
+        self._thumbnails.close()
+        self.node, self.numbers = None, ()
+
+    def _stop(self) -> None:
+        self._stop_job()
+        self._steps = None
+
+    def _draw(self, node: type[Node]) -> Iterator[None]:
+        value = find_main_value(node)
+        assert value is not None
+        graph = make_example(node)
+        yield
+        for index, number in enumerate(self.numbers):
+            with name_specimen(node):
+                yield from self._draw_picture(graph.set(Port(NODE, value.name), number), index)
+
+    def _draw_picture(self, graph: Graph, index: int) -> Iterator[None]:
+        """Compute the first output of a graph, and draw it while its result is on the device."""
+        ports = {_OUTPUT: Port(OUTPUTS, next(iter(graph.outputs)))}
+        request = PreviewRequest(graph, ports, {}, _DRAWN_LIKE_NODES, 1, None)
+        self._job = job = PictureJob(self._renderer, request, ports, 1, timed=False)
+        while not job.is_ready or not job.step():
+            with self._renderer.device.make_current():
+                self._renderer.device.finish()
+            yield
+        assert job.plan is not None
+        source = list_thumbnail_sources(request, job.plan)[NODE]
+        self._thumbnails.offer({_name_slot(index): replace(source, path=_name_slot(index))})
+        self._thumbnails.draw_next()
+        self._stop_job()
+        yield
+
+    def _stop_job(self) -> None:
+        if self._job is not None:
+            self._job.close()
+        self._job = None
+
+
+def _name_slot(index: int) -> str:
+    """A name that no node has, because names have no space."""
+    return f"strip {index}"

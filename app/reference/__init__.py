@@ -1,0 +1,1 @@
+"""What pages say about types of nodes, on the site, in the editor and on the command line."""
