@@ -59,23 +59,26 @@ def main() -> None:
         notice = write_notice(distributions(path=[str(libraries)]))
         write_environment_bill(python, folder / "halation.cdx.json")
         if sys.platform == "linux":
-            notice += write_application(python, work, folder, commit_time)
+            notice += write_application(builds[0][1], python, work, folder, commit_time)
         (folder / "NOTICE").write_text(notice, encoding="utf-8", newline="\n")
     (folder / "SHA256SUMS").write_text(write_checksums(folder), encoding="ascii", newline="\n")
     for path in sorted(folder.iterdir()):
         print(f"{path.relative_to(ROOT)}  {path.stat().st_size / 1e6:.2f} MB")
 
 
-def write_application(python: Path, work: Path, folder: Path, commit_time: int) -> str:
-    """Build the application for Linux twice, as an archive and as one file; returns what is to be added to NOTICE."""
-    pip = [sys.executable, "-m", "pip", "--python", python, "install", "--quiet"]
-    subprocess.run([*pip, f"pyinstaller=={version('pyinstaller')}"], check=True)
+def write_application(wheel: Path, python: Path, work: Path, folder: Path, commit_time: int) -> str:
+    """Build the application for Linux twice, as an archive and as one file; returns what is to be added to NOTICE.
+
+    The second one is built from an installation in another folder: nothing may depend on where the first one was.
+    """
     name = f"halation-{read_version()}-linux-{platform.machine()}"
     archives: list[Path] = []
     applications: list[Path] = []
-    for turn in (1, 2):
+    for turn, builder in enumerate((python, install_everything(wheel, work / "second_installation")), 1):
+        pip = [sys.executable, "-m", "pip", "--python", builder, "install", "--quiet"]
+        subprocess.run([*pip, f"pyinstaller=={version('pyinstaller')}"], check=True)
         (work / f"application{turn}").mkdir()
-        applications.append(build_folder(python, work / f"application{turn}", commit_time))
+        applications.append(build_folder(builder, work / f"application{turn}", commit_time))
         archives.append(work / f"application{turn}" / f"{name}.tar.gz")
         pack_folder(applications[-1], archives[-1], commit_time)
     if archives[0].read_bytes() != archives[1].read_bytes():

@@ -62,6 +62,7 @@ def build_folder(python: Path, folder: Path, commit_time: int) -> Path:
     application = folder / "halation"
     compile_modules(python, application / "lib", environment)
     remove_libraries(application / "lib")
+    remove_traces(application / "lib")
     link_copies(application)
     return application
 
@@ -132,6 +133,16 @@ def remove_libraries(libraries: Path) -> None:
     for path in libraries.iterdir():
         if path.is_symlink() and not path.exists():
             path.unlink()
+
+
+def remove_traces(libraries: Path) -> None:
+    """Take out what depends on the folder of the installation that was collected.
+
+    Lists of installed files have the sums of scripts, whose first line names the Python of that folder, and pip compiles
+    a list of authors that lies among licenses.
+    """
+    for path in [*libraries.glob("*.dist-info/RECORD"), *libraries.glob("*.dist-info/**/*.pyc")]:
+        path.unlink()
 
 
 def link_copies(folder: Path) -> None:

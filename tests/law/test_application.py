@@ -9,7 +9,7 @@ import tarfile
 from pathlib import Path
 
 import pytest
-from application.build import link_copies, pack_folder, remove_libraries, write_single_file
+from application.build import link_copies, pack_folder, remove_libraries, remove_traces, write_single_file
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="only Linux keeps to it")
 
@@ -113,6 +113,16 @@ def test_libraries_that_every_system_has_stay_out(tmp_path):
     remove_libraries(tmp_path)
     left = {path.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("*.so*")}
     assert left == {"libXft.so.2", "numpy.libs/libstdc++.so.6", names[-1]}
+
+
+def test_nothing_tells_where_packages_were_installed(tmp_path):
+    kept = ["av.dist-info/METADATA", "av.dist-info/licenses/AUTHORS.py", "av/a.pyc"]
+    traces = ["av.dist-info/RECORD", "av.dist-info/licenses/__pycache__/AUTHORS.cpython-311.pyc"]
+    for name in (*kept, *traces):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(name)
+    remove_traces(tmp_path)
+    assert sorted(str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*") if path.is_file()) == kept
 
 
 def test_copies_become_links(tmp_path):

@@ -9,7 +9,7 @@ from halation.graph import Graph
 from halation.graph.graph import Group
 from halation.nodes import Node, built_in_nodes
 from halation.nodes.color.exposure import Exposure
-from halation.nodes.utility.select import Select
+from halation.nodes.merge.select import Select
 from halation.presets import paths
 from halation.reference.node_page import describe_cost, find_main_value, find_users, list_names, list_steps
 from halation.renderer import Display, Renderer
@@ -40,7 +40,9 @@ def read(strip: ValueStrip, index: int) -> np.ndarray:
     texture = strip.find(index)
     assert texture is not None
     width, height = texture.size
-    return np.frombuffer(texture.read(), np.uint8).reshape(height, width, -1)[..., :3].astype(int)
+    codes = np.empty((height, width, 4), np.uint8)
+    texture.read_into(codes)
+    return codes[..., :3].astype(int)
 
 
 def test_users_are_those_of_the_loaded_presets() -> None:
