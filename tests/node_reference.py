@@ -111,7 +111,7 @@ TYPE_NAMES = (
 INTRODUCTION = """\
 # What a node may use
 
-Generated from the code by `./dev renew`. [CONTRIBUTING](CONTRIBUTING.md#a-node) and [plugins](plugins.md) say how to
+Generated from the code by `./dev renew`. [CONTRIBUTING](CONTRIBUTING.md#a-node) and [plug-ins](plugins.md) say how to
 write a node; [shaders.md](shaders.md) is about GLSL in a graph, which may use the same libraries.
 
 A node is a class and a GLSL file. The class body declares sockets and values; import what it uses from

@@ -138,8 +138,8 @@ def remove_libraries(libraries: Path) -> None:
 def remove_traces(libraries: Path) -> None:
     """Take out what depends on the folder of the installation that was collected.
 
-    Lists of installed files have the sums of scripts, whose first line names the Python of that folder, and pip compiles
-    a list of authors that lies among licenses.
+    Lists of installed files have the sums of scripts, whose first line names the Python of that folder, and pip
+    compiles a list of authors that lies among licenses.
     """
     for path in [*libraries.glob("*.dist-info/RECORD"), *libraries.glob("*.dist-info/**/*.pyc")]:
         path.unlink()
