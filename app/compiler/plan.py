@@ -19,6 +19,8 @@ from .target import Form, Target
 from .tiling.tiles import Tiling
 
 Depth = Literal["f2", "f4"]
+"""The type of a channel, half float or float. As in numpy, the digit says how many bytes it takes."""
+
 FIRST_TABLE = 16
 """The first texture unit for tables. Pictures use the units below: OpenGL 4.1 guarantees 16 for each shader stage."""
 
@@ -73,7 +75,8 @@ class Surface(Struct, frozen=True):
 
     @property
     def nbytes(self) -> int:
-        return texture_bytes(self.size, self.texel)
+        """The bytes of its texture."""
+        return self.size[0] * self.size[1] * self.components * int(self.depth[1])
 
     @property
     def texel(self) -> str:

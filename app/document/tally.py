@@ -115,6 +115,8 @@ class PartTally(Struct):
 
         They may have wrong types: it is asked before they are converted, which takes longer.
         """
+        if not record.units and not any(map(_is_counted, record.values.values())):
+            return None
         for name, setting in record.values.items():
             if isinstance(setting, dict | list):
                 self.numbers += count_parts(cast("Any", setting))
@@ -185,6 +187,11 @@ def _find_odd_links(record: GraphRecord) -> Iterator[Fault]:
 
 def _get(node: object, key: str) -> object:
     return cast("Mapping[str, object]", node).get(key) if isinstance(node, dict) else None
+
+
+def _is_counted(setting: object) -> bool:
+    """False for a number: there is nothing to count of it."""
+    return isinstance(setting, (dict, list, str))
 
 
 def _refuse(most: int, parts: str, where: str) -> str:

@@ -104,7 +104,7 @@ class _TableExport:
     def _find_input(self) -> str:
         order, bindings = self.order, dict[str, Array]()
         for name, end in order.graph.inputs.items():
-            bindings[name] = np.zeros((1, 1, end.socket().channels), np.float32)
+            bindings[name] = np.zeros((1, 1, end.width), np.float32)
         pictures = self.renderer.pictures
         request = Request({"table": order.target}, pictures.bind(order.graph, bindings), frame=self.frame)
         library = graph_library(order.graph, pictures)
@@ -163,7 +163,7 @@ class _TableExport:
         pixels[..., :3] = self._decode(codes)
         bindings: dict[str, Array] = {}
         for name, end in order.graph.inputs.items():
-            channels = end.socket().channels
+            channels = end.width
             bindings[name] = pixels if name == self.input else np.zeros((height, width, channels), np.float32)
         request = RenderRequest(bindings, {"table": order.target}, (width, height), frame=self.frame, precision="float")
         colors = self.renderer.render(order.graph, request)["table"].astype(np.float32)

@@ -59,16 +59,13 @@ def _explain_after(kind: type, method: Callable[..., Any]) -> Callable[..., Any]
 
 def _find_faulty_argument(kind: type, method: Callable[..., Any]) -> Callable[[Any, Any], str]:
     """A function of arguments that says which of them has a wrong type; "" if none has."""
-    signature, hints = inspect.signature(method), typing.get_type_hints(method)
-    types_by_name = {name: _list_types(hints[name]) for name in signature.parameters if name in hints}
-    key_types = {name: _list_key_types(hints[name]) for name in signature.parameters if name in hints}
+    names, hints = tuple(inspect.signature(method).parameters), typing.get_type_hints(method)
+    types_by_name = {name: _list_types(hints[name]) for name in names if name in hints}
+    key_types = {name: _list_key_types(hints[name]) for name in names if name in hints}
 
     def find(args: Any, options: Any) -> str:
-        try:
-            arguments = signature.bind(*args, **options).arguments
-        except TypeError:  # a missing argument or an unknown keyword, which Python itself says
-            return ""
-        for name, argument in arguments.items():
+        # A missing argument, one too many or an unknown keyword is for Python itself to say.
+        for name, argument in (*zip(names, args, strict=False), *options.items()):
             accepted = types_by_name.get(name, ())
             if accepted and not isinstance(argument, accepted):
                 words = " or ".join("None" if item is type(None) else item.__name__ for item in accepted)

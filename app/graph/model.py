@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from types import MappingProxyType
-from typing import Any, cast
+from typing import Any
 
 from halation.nodes import ColorSettings, Kind, Missing, Node, Pointwise, Scalar, Size, Socket, Value
 from msgspec import Struct
@@ -191,11 +191,14 @@ _SCALARS = frozenset({str, int, float, bool, type(None)})
 
 def freeze(item: Any) -> Any:
     """A read-only copy of a JSON tree: objects as mapping proxies, lists as tuples."""
-    if isinstance(item, Mapping):
-        parts = cast("Mapping[str, Any]", item).items()
-        return MappingProxyType({key: part if type(part) in _SCALARS else freeze(part) for key, part in parts})
-    if isinstance(item, list | tuple):
-        return tuple(part if type(part) in _SCALARS else freeze(part) for part in cast("list[Any]", item))
+    if isinstance(item, (dict, Mapping)):  # a dict first: to ask whether something is a Mapping takes long
+        entries: Mapping[str, Any] = item
+        return MappingProxyType(
+            {key: part if type(part) in _SCALARS else freeze(part) for key, part in entries.items()}
+        )
+    if isinstance(item, (list, tuple)):
+        parts: Sequence[Any] = item
+        return tuple([part if type(part) in _SCALARS else freeze(part) for part in parts])
     return item
 
 

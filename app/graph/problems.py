@@ -252,7 +252,7 @@ def _control_fault(graph: Graph, name: str, target: Port) -> str | None:
 
 
 def _default_fault(name: str, end: Input) -> str | None:
-    channels = end.socket().channels
+    channels = end.width
     default = (end.default,) if isinstance(end.default, int | float) else end.default
     fits = coerce_numbers(default, 1) or coerce_numbers(default, channels)
     if default is None or (fits and all(map(math.isfinite, fits))):

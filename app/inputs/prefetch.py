@@ -63,15 +63,12 @@ def _predict_requests(graph: Graph, inputs: Mapping[str, str], sandbox: Sandbox)
     replaced = {graph.inputs[name].file for name in inputs}
     manager = get_color_manager(color_settings(graph), sandbox)
     for name, socket in graph.inputs.items():
-        if name not in linked or socket.socket().single or (name not in inputs and socket.file in replaced):
+        if name not in linked or socket.kind.is_single or (name not in inputs and socket.file in replaced):
             continue
         path, layer = _find_file(graph, socket, inputs.get(name), sandbox=sandbox)
         if path and not is_video(path) and Pattern.parse(path) is None and Path(path).is_file():
-            width = socket.socket().channels
-            yield (
-                path,
-                LayerRequest(layer, socket.kind, width, socket.color_space, manager, graph.settings.overscan > 0.0),
-            )
+            extends = graph.settings.overscan > 0.0
+            yield path, LayerRequest(layer, socket.kind, socket.width, socket.color_space, manager, extends)
 
 
 def _find_file(graph: Graph, socket: Input, bound: str | None, sandbox: Sandbox) -> tuple[str, str]:

@@ -64,6 +64,7 @@ class MediaProvider:
         self._earlier_infos: dict[str, ImageInfo] = {}
         """What the graph before read: a dragged value must not open every file again."""
         self._fingerprints: dict[str, str] = {}
+        """Of arrays that are bound, by input."""
         self._encodings: dict[tuple[str, str, str, ColorSettings], _Encoding] = {}
         self._earlier_encodings: dict[tuple[str, str, str, ColorSettings], _Encoding] = {}
 
@@ -125,6 +126,8 @@ class MediaProvider:
         if picture.in_memory:
             array = cast("Array", picture.pixels)
             height, width = array.shape[:2]
+            if picture.path not in self._fingerprints:  # many bindings are only asked for their files
+                self._fingerprints[picture.path] = _array_fingerprint(array)
             return PictureProbe((width, height), array.dtype.name == "float16", self._fingerprints[picture.path])
         from .layer_choice import find_input_layer
 
@@ -284,7 +287,7 @@ class MediaProvider:
                     f"bind '{name}' too"
                 )
             siblings[name] = Picture(
-                new.path, self._choose_layer(new.path, socket, is_bound=False), socket.kind, socket.socket().channels
+                new.path, self._choose_layer(new.path, socket, is_bound=False), socket.kind, socket.width
             )
         return siblings
 
@@ -293,7 +296,7 @@ class MediaProvider:
             noun = socket.kind.facts.noun
             raise UsageError(f"input '{name}' is a {noun}, which cannot be a file or a number: link one in the graph")
         if not isinstance(item, str | Path):
-            array = _as_input_array(item, socket.socket().single)
+            array = _as_input_array(item, socket.kind.is_single)
             if array.ndim not in (2, 3) or not array.size or array.dtype.kind not in "fiub":
                 shape = f"{array.dtype} {list(array.shape)}"
                 raise UsageError(f"input '{name}': the array is {shape}; give numbers as [height, width, channels]")
@@ -302,10 +305,9 @@ class MediaProvider:
                     f"input '{name}': {array.dtype} pixels are those of a file and encoded for a display; give "
                     "scene-linear floats, or the path of the file"
                 )
-            self._fingerprints[name] = _array_fingerprint(array)
-            return Picture(name, "", socket.kind, socket.socket().channels, in_memory=True, pixels=array)
+            return Picture(name, "", socket.kind, socket.width, in_memory=True, pixels=array)
         path, layer = split_layer(str(item))
-        return Picture(path, layer or self._choose_layer(path, socket), socket.kind, socket.socket().channels)
+        return Picture(path, layer or self._choose_layer(path, socket), socket.kind, socket.width)
 
     def _choose_layer(self, path: str, socket: Input, *, is_bound: bool = True) -> str:
         """The layer of a file for an input, by name or by role."""

@@ -226,9 +226,7 @@ def problems(graph: Graph, world: NotingProvider, enough: Enough) -> Iterator[tu
         return
     world.faults.clear()
     world.size = graph.settings.size or SIZE
-    bindings = {
-        name: Picture(name, "", item.kind, item.socket().channels, in_memory=True) for name, item in free.items()
-    }
+    bindings = {name: Picture(name, "", item.kind, item.width, in_memory=True) for name, item in free.items()}
     try:
         examine(graph, Request(bindings=bindings, frame=world.first_frame(graph)), world)
     except ManyFilesError as fault:

@@ -7,6 +7,7 @@ is a TypeError, as Python raises it.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import cache
 from operator import index
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -37,21 +38,11 @@ def describe_object(item: object) -> str:
 
 def check_graph(graph: object) -> Graph:
     """A graph that holds what a graph may hold. Raises UsageError."""
-    from halation.nodes import Node
-
-    from ..graph import Control, Expression, Graph, Group, Input, Keys, Output, Port, Unknown
+    from ..graph import Graph
 
     if not isinstance(graph, Graph):
         raise UsageError(f"graph: give a Graph, such as load returns, not {describe_object(graph)}")
-    sections: tuple[tuple[str, type | tuple[type, ...], type | tuple[type, ...]], ...] = (
-        ("nodes", str, (Node, Group, Unknown)),
-        ("links", Port, Port),
-        ("inputs", str, Input),
-        ("outputs", str, Output),
-        ("controls", str, Control),
-        ("animation", Port, (Keys, Expression)),
-    )
-    for name, keys, parts in sections:
+    for name, keys, parts in _list_section_types():
         for key, part in getattr(graph, name).items():
             if not isinstance(key, keys) or not isinstance(part, parts):
                 where = f"{describe_object(key)}: {describe_object(part)}"
@@ -60,6 +51,23 @@ def check_graph(graph: object) -> Graph:
     if last < first:
         raise GraphError(f"the frames {first} to {last} of the graph run backwards: exchange the two")
     return graph
+
+
+@cache
+def _list_section_types() -> tuple[tuple[str, type, tuple[type, ...]], ...]:
+    """The sections of a graph, and the types of their keys and entries."""
+    from halation.nodes import Node
+
+    from ..graph import Control, Expression, Group, Input, Keys, Output, Port, Unknown
+
+    return (
+        ("nodes", str, (Node, Group, Unknown)),
+        ("links", Port, (Port,)),
+        ("inputs", str, (Input,)),
+        ("outputs", str, (Output,)),
+        ("controls", str, (Control,)),
+        ("animation", Port, (Keys, Expression)),
+    )
 
 
 def check_text(name: str, text: object) -> str:

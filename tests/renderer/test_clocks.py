@@ -84,7 +84,7 @@ def test_a_picture_costs_decoding_and_writing(engine, monkeypatch):
     plan = engine.compile(graph_of(Exposure(stops=0.7), pixels), RenderRequest(pixels))
     engine.runner.run(plan)
     numbers = plan.uploads[0].surface, plan.outputs["out"]
-    picture, result = (engine.runner.find_texture(plan.surfaces[number].key) for number in numbers)
+    picture, result = (engine.runner.textures.find(plan.surfaces[number].key) for number in numbers)
     assert picture.cost == 2.5 and result.cost > 0.0
     engine.close()
 

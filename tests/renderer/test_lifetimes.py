@@ -124,16 +124,16 @@ def test_outputs_stay_on_the_device_as_long_as_they_are_leased(forgetful):
     key = plan.surfaces[plan.outputs["image"]].key
     for _ in forgetful.runner.start_run(plan, kept):
         pass
-    texture = forgetful.runner.find_texture(key)
+    texture = forgetful.runner.textures.find(key)
     assert texture is not None and texture.handle.size == (37, 23)
     for stops in (2.0, 3.0):
         forgetful.render(chain(stops), wanted())
-    assert forgetful.runner.find_texture(key) is texture
+    assert forgetful.runner.textures.find(key) is texture
     np.testing.assert_array_equal(
         forgetful.runner.download(plan)["image"], forgetful.render(chain(), wanted())["image"]
     )
     kept.close()
-    assert forgetful.runner.find_texture(key) is None
+    assert forgetful.runner.textures.find(key) is None
 
 
 def test_passes_are_timed_on_request(forgetful):

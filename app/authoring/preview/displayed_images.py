@@ -127,7 +127,7 @@ class DisplayedImages:
         same = before is not None and before.image.key == surface.key
         lease = self._runner.create_lease()
         lease.add(surface.key)
-        texture = self._runner.find_texture(surface.key)
+        texture = self._runner.textures.find(surface.key)
         assert texture is not None
         self._revision += not same
         return _LeasedImage(

@@ -100,7 +100,7 @@ class Thumbnails:
     def draw_next(self) -> None:
         """Draw the next thumbnail, if its result is still on the device."""
         subject = self._waiting.pop(next(iter(self._waiting)))
-        texture = self._renderer.runner.find_texture(subject.key)
+        texture = self._renderer.runner.textures.find(subject.key)
         if texture is None:
             return
         source = _DisplaySource(texture.handle, subject.size, subject.channels, subject.key, subject.start)

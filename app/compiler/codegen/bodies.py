@@ -32,7 +32,7 @@ def write_accessor(names: ShaderNames, item: Accessor, edge: Edge) -> list[str]:
     """
     name, glsl = item.name, item.glsl
     if isinstance(item.operand, Ref):
-        size = names.shape(item.operand).size
+        size = names.program.shape(item.operand).size
         names.uniform("ivec2", size, f"{name}_size")
         extent = names.program.extents.get(item.operand)
         if extent and edge in ("clamp", "black"):
@@ -68,7 +68,7 @@ def write_convolution_accessor(names: ShaderNames, op: Convolve, is_strip: bool)
     names.uniform("int", op.origin, "origin")
     if not (is_strip and is_unrolled(op)):
         names.uniform("int", len(op.weights), "taps")
-    glsl = glsl_type(names.shape(op.image).channels)
+    glsl = glsl_type(names.program.shape(op.image).channels)
     block = f"layout(std140) uniform Weights {{ vec4 weights[{MAX_WEIGHTS // 4}]; }};"
     return [block, *write_accessor(names, Accessor("image", glsl, op.image), op.edge)]
 
@@ -92,7 +92,7 @@ def write_small_decimation(names: ShaderNames, op: Convolve) -> list[str]:
 
 def _write_sum_of_taps(names: ShaderNames, op: Convolve, loop: list[str]) -> list[str]:
     """`convolution` around a loop that adds to `sum` and moves `p` along."""
-    glsl = glsl_type(names.shape(op.image).channels)
+    glsl = glsl_type(names.program.shape(op.image).channels)
     stride = names.uniform("int", op.stride, "stride")
     return [
         f"{glsl} convolution() {{",
@@ -120,7 +120,7 @@ def write_strip(names: ShaderNames, op: Convolve, count: int) -> list[str]:
 
     Every pixel is read once. Terms are added in the order of a plain loop, so all forms give the same bits.
     """
-    glsl = glsl_type(names.shape(op.image).channels)
+    glsl = glsl_type(names.program.shape(op.image).channels)
     lines = [
         f"ivec2 p = first + along * (first * {op.stride - 1} + origin);",
         f"{glsl} t, {', '.join(f's{k} = {glsl}(0.0)' for k in range(count))};",
@@ -173,7 +173,7 @@ def pad_weights(op: Convolve, form: str) -> tuple[float, ...]:
 
 def write_source(names: ShaderNames, root: Reduce, body: list[str], value: str) -> list[str]:
     """Write `source_at`: a pixel of the reduced picture, computed here if its producers joined the pass."""
-    shape = names.shape(root.image)
+    shape = names.program.shape(root.image)
     names.uniform("ivec2", shape.size, "source_size")
     return [
         f"{glsl_type(shape.channels)} source_at(ivec2 p) {{",
@@ -186,7 +186,7 @@ def write_source(names: ShaderNames, root: Reduce, body: list[str], value: str) 
 
 def write_reduction(names: ShaderNames, root: Reduce) -> list[str]:
     """Write the loop in which every invocation folds one block; blocks at the far edges are smaller."""
-    glsl = glsl_type(names.shape(root.image).channels)
+    glsl = glsl_type(names.program.shape(root.image).channels)
     fold = "result + c" if root.operation == "sum" else "max(result, c)"
     return [
         f"{glsl} reduced(ivec2 block) {{",

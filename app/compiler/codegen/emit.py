@@ -71,7 +71,7 @@ def _emit_root(root: Op, request: _PassRequest) -> EmittedProgram:
     if "frame" in uniforms:
         names.uniform("int", program.frame, "frame")
     texels = [
-        _write_texel(names.shape(ref), result, half)
+        _write_texel(names.program.shape(ref), result, half)
         for ref, result, half in zip(group.writes, parts.results, request.halves, strict=True)
     ]
     strip = parts.convolution if parts.is_strip else None

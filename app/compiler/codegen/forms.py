@@ -76,7 +76,7 @@ def write_main(
         return [*lines, *body, *write_results(texels), condition, *stores, "}", "}"]
     results = name_results(texels)
     step = "pixel += along;" if convolve else "++pixel.y;"
-    arguments = [f"{glsl_type(names.shape(convolve.image).channels)} convolved"] if convolve else []
+    arguments = [f"{glsl_type(names.program.shape(convolve.image).channels)} convolved"] if convolve else []
     pixel_function = [
         f"void made({', '.join([*arguments, *(f'precise out vec4 {name}' for name in results)])}) {{",
         *body,

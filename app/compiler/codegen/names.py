@@ -8,7 +8,7 @@ from halation.nodes import Uniform, glsl_type
 from msgspec import Struct, field
 
 from ..areas import Region
-from ..ir import Choice, LoweredProgram, Parameter, PictureShape, Ref, UniformConstant
+from ..ir import Choice, LoweredProgram, Parameter, Ref, UniformConstant
 from ..target import Form
 
 _FLOAT32 = 3.4e38
@@ -46,12 +46,9 @@ class ShaderNames(Struct):
         self.uniforms.append((name, "int" if glsl == "bool" else glsl, value))
         return f"({name} != 0)" if glsl == "bool" else name
 
-    def shape(self, ref: Ref) -> PictureShape:
-        return self.program.ops[ref.op].shapes[ref.output]
-
     def load(self, ref: Ref, where: str) -> str:
         """The expression that reads one pixel; a 1x1 picture has the same pixel everywhere."""
-        shape = self.shape(ref)
+        shape = self.program.shape(ref)
         where = "ivec2(0)" if shape.size == (1, 1) else where
         name = f"t{self.textures[ref]}"
         if self.program.window(ref):
@@ -61,17 +58,17 @@ class ShaderNames(Struct):
 
     def load_own(self, ref: Ref) -> str:
         """The expression that reads the pixel that is made: 0 where a picture ends before the one that is written."""
-        window = self.program.window(ref) or Region.whole(self.shape(ref).size)
+        window = self.program.window(ref) or Region.whole(self.program.shape(ref).size)
         text = self.load(ref, "pixel")
         if self.written is None or window.size == (1, 1) or window.contains(self.written):
             return text
         corners = self.uniform("ivec4", (*window.start, window.across[1], window.down[1]))
         guard = f"all(greaterThanEqual(pixel, {corners}.xy)) && all(lessThan(pixel, {corners}.zw))"
-        return f"({guard} ? {text} : {glsl_type(self.shape(ref).channels)}(0.0))"
+        return f"({guard} ? {text} : {glsl_type(self.program.shape(ref).channels)}(0.0))"
 
     def load_as(self, ref: Ref, where: str, glsl: str) -> str:
         """The expression that reads one pixel as another type."""
-        return convert(self.load(ref, where), self.shape(ref).channels, glsl)
+        return convert(self.load(ref, where), self.program.shape(ref).channels, glsl)
 
     def constant(self, item: UniformConstant, glsl: str) -> str:
         """A uniform with a constant, limited to the range of its type, and converted like a picture's channels."""
@@ -95,7 +92,7 @@ class ShaderNames(Struct):
         if isinstance(item.operand, UniformConstant):
             return self.constant(item.operand, item.glsl)
         text = values[item.operand]
-        channels = self.shape(item.operand).channels
+        channels = self.program.shape(item.operand).channels
         if item.low != float("-inf") or item.high != float("inf"):
             text = f"clamp({text}, {_write_bound(item.low)}, {_write_bound(item.high)})"
         if item.factor != 1.0:

@@ -123,7 +123,7 @@ def _(root: Convolve, context: PassContext) -> PassParts:
     if not is_strip:
         write = bodies.write_convolution if names.form == "fragment" else bodies.write_small_decimation
         functions += write(names, root)
-        glsl = glsl_type(names.shape(root.image).channels)
+        glsl = glsl_type(names.program.shape(root.image).channels)
         body.append(f"{glsl} convolved = convolution();")
     return PassParts([EDGES], functions, body, ["convolved"], convolution=root, is_strip=is_strip)
 
@@ -174,7 +174,7 @@ def _write_calls(context: PassContext) -> tuple[list[str], dict[Ref, str]]:
             continue
         values[ref] = f"a{number}"
         loaded_pixel = names.load_own(ref) if context.root.is_pointwise else names.load(ref, "pixel")
-        lines.append(f"{glsl_type(names.shape(ref).channels)} a{number} = {loaded_pixel};")
+        lines.append(f"{glsl_type(names.program.shape(ref).channels)} a{number} = {loaded_pixel};")
     for number, index in enumerate(group.members):
         op = context.program.ops[index]
         if not isinstance(op, FunctionOp):

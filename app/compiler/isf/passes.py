@@ -114,7 +114,7 @@ def write_function(
     texts = select_texts(context, parts)
     lines = list(_write_functions(context, texts, parts, functions))
     result = parts.results[output]
-    whole = convert(result, names.shape(fused.writes[output]).channels, "vec4")
+    whole = convert(result, names.program.shape(fused.writes[output]).channels, "vec4")
     used_words = words(*lines, *parts.body, result)
     optional_globals = {
         "frame": ("int", f"@FRAMEINDEX + {names.first}"),

@@ -26,7 +26,7 @@ class ReferencedPictures:
     def __iter__(self) -> Iterator[tuple[Picture, str]]:
         """Every picture and the node that reads it, inputs first, then sources. A path may stand for a sequence."""
         for port, socket in self._flat.inputs.items():
-            named = port.node == INPUTS and not socket.socket().single
+            named = port.node == INPUTS and not socket.kind.is_single
             picture = self.find_bound(port, socket) if named else None
             if picture is not None:
                 yield picture, f"{port}"
@@ -39,7 +39,7 @@ class ReferencedPictures:
         """The picture bound to a graph input, else its default file; None for objects such as cameras."""
         if socket.kind.is_planned:
             return None
-        kind, width = socket.kind, socket.socket().channels
+        kind, width = socket.kind, socket.width
         bound = self._bindings.get(port.socket) if port.node == INPUTS else None
         if bound is not None:
             return replace(bound, kind=kind, width=width, space=socket.color_space)
@@ -58,7 +58,7 @@ def find_named_files(graph: Graph, bindings: Mapping[str, Picture]) -> list[tupl
 
     Groups are looked into; a path may stand for a sequence.
     """
-    if not _names_files(graph):
+    if not _names_files(graph, bindings):
         return []
     flat = expand(graph)
 
@@ -76,10 +76,18 @@ def find_named_files(graph: Graph, bindings: Mapping[str, Picture]) -> list[tupl
     ]
 
 
-def _names_files(graph: Graph) -> bool:
-    """False for a graph that makes all that it shows, which need not be expanded."""
-    return any(not end.kind.is_planned for end in graph.inputs.values()) or any(
-        _names_files(item.graph) if isinstance(item, Group) else isinstance(item, Source)
+def _names_files(graph: Graph, bindings: Mapping[str, Picture]) -> bool:
+    """False for a graph that certainly reads no file, which need not be expanded."""
+    for name, end in graph.inputs.items():
+        if not bindings[name].in_memory if name in bindings else end.file:
+            return True
+    return _has_source(graph)
+
+
+def _has_source(graph: Graph) -> bool:
+    """True if a node of the graph, or of a group in it, may read a file."""
+    return any(
+        _has_source(item.graph) if isinstance(item, Group) else isinstance(item, Source)
         for item in graph.nodes.values()
     )
 

@@ -145,7 +145,7 @@ class EndView:
     def _default(self, rows: Rows, name: str, end: Input, width: float) -> Edit | None:
         """Draw the default with a button that removes it, or a button that sets one."""
         session, key = rows.context.session, f"{Port(INPUTS, name)} default"
-        channels = end.socket().channels
+        channels = end.width
         if end.default is None:
             if imgui.button(make_label(translate("None"), f"{key}"), (width, 0.0)):
                 start: Scalar = 0.0 if channels == 1 else (0.0,) * channels

@@ -277,7 +277,7 @@ class Executor:
         while row < total:
             end = min(row + height, total)
             program = self.programs.get(render_pass)
-            textures = [self.find_texture(plan, number).handle for number in render_pass.textures]
+            textures = [self._find(plan.surfaces[number].key).handle for number in render_pass.textures]
             for name, number in render_pass.uniforms:
                 program.set(name, number)
             started = time.perf_counter()
@@ -349,11 +349,8 @@ class Executor:
         numbers[: len(weights)] = weights
         return self.device.create_buffer(numbers)
 
-    def find_texture(self, plan: Plan, number: int) -> PooledTexture:
-        """The texture of a surface that has a lease."""
-        return self._find(plan.surfaces[number].key)
-
     def _find(self, key: str) -> PooledTexture:
+        """The texture of a surface that has a lease."""
         texture = self.textures.find(key)
         assert texture is not None, f"{key} is gone before its last reader"
         return texture
@@ -365,7 +362,7 @@ class Executor:
         self.device.finish()  # other threads go on meanwhile, and llvmpipe may read before the draws are done
         shape = (height, width, surface.components)
         pixels = arrays.take(shape, np.float16 if surface.depth == "f2" else np.float32)
-        self.find_texture(plan, number).handle.read_into(pixels)
+        self._find(surface.key).handle.read_into(pixels)
         return pixels[..., : surface.channels]
 
 

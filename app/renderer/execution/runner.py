@@ -16,7 +16,7 @@ from .array_pool import ArrayPool
 from .decoding import Array, DecodedPicture, DecodeQueue, DecodeRequest, PictureLoader, decode_picture, limit_lookahead
 from .executor import Executor
 from .run import PassTimings, Run, WholeRun, find_needed_passes, find_needed_uploads
-from .texture_pool import PooledTexture, TextureLease
+from .texture_pool import TextureLease
 from .tiles import TiledRun
 from .trials import Trials
 
@@ -155,10 +155,6 @@ class Runner:
         """Release all textures without a lease."""
         with self.device.make_current():
             self.textures.release_idle()
-
-    def find_texture(self, key: str) -> PooledTexture | None:
-        """The texture that holds these pixels, if any does."""
-        return self.textures.find(key)
 
     def close(self) -> None:
         """Give everything back. Runs that are under way end here."""
