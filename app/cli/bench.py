@@ -93,19 +93,15 @@ def bench(
         raise UsageError("--fail-over: name the file to compare with: --compare baseline.json")
     parsed_precision = parsing.parse_precision(precision)
     pass_form = parsing.parse_form(form)
-    canvas, proxy, named_frames = (
-        parsing.parse_size(size),
-        parsing.parse_scale(scale),
-        parsing.parse_frame_options(frame, frames),
-    )
+    canvas = parsing.parse_size(size)
+    proxy = parsing.parse_scale(scale)
+    named_frames = parsing.parse_frame_options(frame, frames)
     opened_graph = open_graph(graph, parsing.parse_sets(sets), sandbox=sandbox)
     report_problems(graph, opened_graph)
     if (code := rerun_watched(context, graph, opened_graph, timeout)) is not None:
         return code
-    bindings, targets = (
-        resolve_inputs(opened_graph, parsing.parse_inputs(inputs)),
-        parsing.find_targets(opened_graph, node),
-    )
+    bindings = resolve_inputs(opened_graph, parsing.parse_inputs(inputs))
+    targets = parsing.find_targets(opened_graph, node)
     measured_frames = named_frames or (LazyResourceProvider(sandbox).find_frames(opened_graph, bindings)[0],)
     renderer = Renderer(open_device(pass_form, sandbox=sandbox), budget=0, sandbox=sandbox)
     request = RenderRequest(bindings, targets, canvas, proxy, precision=parsed_precision)

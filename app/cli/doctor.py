@@ -8,7 +8,7 @@ import platform
 import re
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import suppress
 from importlib import metadata
 from pathlib import Path
@@ -74,13 +74,14 @@ def doctor(as_json: AsJson = False) -> int:
 
 def examine_machine() -> Iterator[MachineCheck]:
     """All checks, one after the other. No sentence names the user: reports of bugs are public."""
+    homes = list_homes()
     for check in _examine_everything():
-        yield msgspec.structs.replace(check, sentence=hide_users(check.sentence))
+        yield msgspec.structs.replace(check, sentence=hide_users(check.sentence, homes))
 
 
-def hide_users(sentence: str) -> str:
-    """A sentence with ~ for the home folders of the user, and ... for the names of users in other paths."""
-    for home in sorted(list_homes(), key=len, reverse=True):
+def hide_users(sentence: str, homes: Collection[str]) -> str:
+    """A sentence with ~ for these home folders, and ... for the names of users in other paths."""
+    for home in sorted(homes, key=len, reverse=True):
         sentence = re.sub(rf"(?<![\w.-]){re.escape(home)}(?![\w.-])", "~", sentence)
     return re.sub(rf"([/\\](?:{'|'.join(_USERS)})[/\\])[^/\\\s]+", r"\1...", sentence)
 

@@ -74,11 +74,11 @@ def write_node_section(node: type[Node]) -> Iterator[str]:
         yield _escape_paragraph(f"Also known as {', '.join(node.aliases)}.")
     outputs = {name: output.socket for name, output in node.outputs.items()}
     for title, sockets in (("input", node.inputs), ("output", outputs)):
-        noted = {name: socket for name, socket in sockets.items() if socket_note(socket) and not socket.folded}
-        if noted:
+        explained = {name: socket for name, socket in sockets.items() if socket_note(socket) and not socket.folded}
+        if explained:
             rows = [
                 (f"`{name}`", socket_type(socket), escape_markdown(socket_note(socket)))
-                for name, socket in noted.items()
+                for name, socket in explained.items()
             ]
             yield _table((title, "type", ""), rows)
     values = [value for value in node.values.values() if not value.folded]

@@ -31,10 +31,10 @@ def check_nodes(name: str, as_json: bool, sandbox: Sandbox) -> int:
             faults[id] += () if faults[id] else find_overlap_faults(renderer, node)
     finally:
         renderer.close()
-    said = {sentence for sentences in faults.values() for sentence in sentences}
+    reported = {sentence for sentences in faults.values() for sentence in sentences}
     for shader, sentences in _find_file_faults(chosen, classes):
-        new = [sentence for sentence in sentences if sentence not in said]
-        faults |= {shader: new} if new else {}
+        new_faults = [sentence for sentence in sentences if sentence not in reported]
+        faults |= {shader: new_faults} if new_faults else {}
     if as_json:
         print_json({"faults": faults})
     else:

@@ -101,10 +101,8 @@ def sweep(
     report_problems(graph, opened_graph)
     if (code := rerun_watched(context, graph, opened_graph, timeout)) is not None:
         return code
-    bindings, targets = (
-        resolve_inputs(opened_graph, parsing.parse_inputs(inputs)),
-        parsing.find_targets(opened_graph, node),
-    )
+    bindings = resolve_inputs(opened_graph, parsing.parse_inputs(inputs))
+    targets = parsing.find_targets(opened_graph, node)
     frame_of_all = (
         named_frames[0] if named_frames else LazyResourceProvider(sandbox).find_frames(opened_graph, bindings)[0]
     )

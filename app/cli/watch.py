@@ -90,10 +90,8 @@ def watch(
         from ..renderer import RenderRequest
         from ..renderer.jobs.job import OutputSettings, run_job
 
-        bindings, targets = (
-            resolve_inputs(graph_now, parsing.parse_inputs(inputs)),
-            parsing.find_targets(graph_now, node),
-        )
+        bindings = resolve_inputs(graph_now, parsing.parse_inputs(inputs))
+        targets = parsing.find_targets(graph_now, node)
         first, last = (0, 0) if named_frames else LazyResourceProvider(sandbox).find_frames(graph_now, bindings)
         every = named_frames or (list_range(first, last) if parsing.have_frame_number(destinations) else (first,))
         request = RenderRequest(bindings, targets, canvas, proxy, precision=parsed_precision)

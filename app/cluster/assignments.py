@@ -209,6 +209,6 @@ class WaitingAssignments:
         """Those for which no other worker is expected any more; they wait no more."""
         return self._take([item for item in self._assignments if not self._workers.expects_others(item.tried)])
 
-    def _take(self, taken: list[Assignment]) -> list[Assignment]:
-        self._assignments = [item for item in self._assignments if item not in taken]
-        return taken
+    def _take(self, assignments: list[Assignment]) -> list[Assignment]:
+        self._assignments = [item for item in self._assignments if item not in assignments]
+        return assignments

@@ -140,11 +140,9 @@ def make_display_processor(view: str, display: str, look: str = "", manager: Col
     """
     if view.casefold() in _PLAIN_DISPLAYS and look in ("", NO_LOOK):
         return _make_plain_processor(manager or get_default_color_manager(), view.casefold())
-    screen, chosen_view, chosen_look = (
-        find_display(display, manager),
-        find_view(view, display, manager),
-        find_look(look, manager),
-    )
+    screen = find_display(display, manager)
+    chosen_view = find_view(view, display, manager)
+    chosen_look = find_look(look, manager)
     if chosen_view in _PLAIN_DISPLAYS and chosen_look in ("", NO_LOOK):
         return _make_plain_processor(manager or get_default_color_manager(), chosen_view)
     return _make_view_processor((manager or get_default_color_manager()), screen, chosen_view, chosen_look)

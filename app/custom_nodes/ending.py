@@ -27,11 +27,8 @@ def add_ending(text: str, entry: GlslFunction, prefix: str) -> str:
     arguments = ", ".join(name for _, name in (*entry.parameters, *entry.outputs))
     call, results, returned = f"{inner}({arguments});", entry.outputs, ""
     if not results:
-        call, results, returned = (
-            f"{entry.result} halation_made = {call}",
-            ((entry.result, "halation_made"),),
-            "halation_made",
-        )
+        returned = "halation_made"
+        call, results = f"{entry.result} {returned} = {call}", ((entry.result, returned),)
     fill_with_nan = " ".join(f"{name} = {glsl}({_NAN});" for glsl, name in results)
     return (
         f'{text}\n#include "lib/rounds.glsl"\n{entry.result} {outer}({parameters}) {{'

@@ -118,18 +118,18 @@ class Graph(Wired[Item], EndEdits):
         """The output at `port` as its node declares it; None for a node of unknown type. Raises GraphError."""
         if port.node == INPUTS:
             return pick(self.inputs, port.socket, "the graph has no input").socket(port.socket)
-        face = signature(self.node(port.node))
-        return None if face.anything else pick(face.outputs, port.socket, f"node '{port.node}' has no output")
+        interface = signature(self.node(port.node))
+        return None if interface.anything else pick(interface.outputs, port.socket, f"node '{port.node}' has no output")
 
     def target(self, port: Port) -> Socket | Value | None:
         """The input or value at `port`; None for a node of unknown type. Raises GraphError."""
         if port.node == OUTPUTS:
             return pick(self.outputs, port.socket, "the graph has no output").socket(port.socket)
         item = self.node(port.node)
-        face = signature(item)
-        if face.anything or port.socket in face.inputs:
-            return face.inputs.get(port.socket)
-        declared = face.values if port.socket in face.values else {**face.inputs, **face.values}
+        interface = signature(item)
+        if interface.anything or port.socket in interface.inputs:
+            return interface.inputs.get(port.socket)
+        declared = interface.values if port.socket in interface.values else {**interface.inputs, **interface.values}
         value = find_setting(item, port.socket) or pick(declared, port.socket, f"node '{port.node}' has no input")
         if "." in port.socket or not _is_pointwise(item, port.socket):
             raise GraphError(f"'{port}' can only be set: only values of pointwise nodes can be wired")
@@ -147,8 +147,8 @@ class Graph(Wired[Item], EndEdits):
 
     def bypass(self, id: str, target: Socket | Value | None) -> Port | None:
         """The port that can feed `target` in place of node `id`: the source of its first linked input that fits."""
-        face = signature(self.node(id))
-        ports = self.links_into.get(id, ()) if face.anything else [Port(id, name) for name in face.inputs]
+        interface = signature(self.node(id))
+        ports = self.links_into.get(id, ()) if interface.anything else [Port(id, name) for name in interface.inputs]
         for source in (self.links[port] for port in ports if port in self.links):
             try:
                 start = self.source(source)
@@ -209,13 +209,15 @@ class Graph(Wired[Item], EndEdits):
 
         A link stays on the socket of its name, else moves to the first free one that fits. What fits none is removed.
         """
-        before, face = self.node(id), signature(item)
+        before, interface = self.node(id), signature(item)
         after = self._with(nodes={**self.nodes, id: item})
-        links = relink(self.links, id, signature(before), face, lambda start, end: not after.link_fault(start, end))
+        links = relink(
+            self.links, id, signature(before), interface, lambda start, end: not after.link_fault(start, end)
+        )
         find = partial(find_setting, item)
-        controls = keep_controls(self.controls, id, face, find)
+        controls = keep_controls(self.controls, id, interface, find)
         extra = self.extra if type(before) is type(item) else move_keys(self.extra, f"nodes.{id}")
-        animation = keep_animation(self.animation, id, face, find)
+        animation = keep_animation(self.animation, id, interface, find)
         return after._with(links=links, controls=controls, animation=animation, extra=extra)
 
     def mute(self, id: str, on: bool = True) -> Self:

@@ -243,9 +243,9 @@ def _ends(graph: Graph) -> Iterator[Problem]:
 def _control_fault(graph: Graph, name: str, target: Port) -> str | None:
     try:
         item = graph.node(target.node)
-        face = signature(item)
-        if not face.anything and find_setting(item, target.socket) is None:
-            pick(face.values, target.socket, f"node '{target.node}' has no value")
+        interface = signature(item)
+        if not interface.anything and find_setting(item, target.socket) is None:
+            pick(interface.values, target.socket, f"node '{target.node}' has no value")
     except GraphError as error:
         return f"control '{name}' points at '{target}': {error}"
     return None

@@ -48,19 +48,21 @@ def relink(links: Mapping[Port, Port], id: str, old: Signature, new: Signature, 
     return other_links
 
 
-def keep_controls(controls: Mapping[str, Control], id: str, face: Signature, find: Find) -> dict[str, Control]:
+def keep_controls(controls: Mapping[str, Control], id: str, interface: Signature, find: Find) -> dict[str, Control]:
     """All controls, without those of values that node `id` does not have."""
     return {
         name: control
         for name, control in controls.items()
-        if control.target.node != id or face.anything or find(control.target.socket)
+        if control.target.node != id or interface.anything or find(control.target.socket)
     }
 
 
-def keep_animation(animation: Mapping[Port, Animation], id: str, face: Signature, find: Find) -> dict[Port, Animation]:
+def keep_animation(
+    animation: Mapping[Port, Animation], id: str, interface: Signature, find: Find
+) -> dict[Port, Animation]:
     """All animation, without that of values that node `id` does not have or that cannot be animated."""
     return {
         port: item
         for port, item in animation.items()
-        if port.node != id or face.anything or ((value := find(port.socket)) and value.type in ANIMATED)
+        if port.node != id or interface.anything or ((value := find(port.socket)) and value.type in ANIMATED)
     }

@@ -192,8 +192,8 @@ def find_surface_points(places: Array) -> Array:
         good = (np.abs(places) < FARTHEST).all(axis=1) & (places != 0.0).any(axis=1)
     if good.any():
         mixed = places[good] @ _MIXER
-        _, which, counts = np.unique(mixed, return_inverse=True, return_counts=True)
-        good[good] = counts[which] <= max(_FEWEST_REPEATS, _REPEATED_SHARE * len(places))
+        _, groups, counts = np.unique(mixed, return_inverse=True, return_counts=True)
+        good[good] = counts[groups] <= max(_FEWEST_REPEATS, _REPEATED_SHARE * len(places))
     return good
 
 

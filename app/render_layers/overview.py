@@ -66,12 +66,10 @@ def summarize_render(
         path, named={role: layer for role, layer in named.items() if role not in faults}, sandbox=sandbox
     )
     try:
-        rules, camera, fault, text = (
-            analysis.conventions,
-            analysis.camera,
-            "",
-            "\n".join(format_report(analysis)),
-        )
+        rules = analysis.conventions
+        camera = analysis.camera
+        fault = ""
+        text = "\n".join(format_report(analysis))
     except InputError as error:
         rules, camera, fault, text = {}, RenderCamera(None, str(error)), str(error), ""
     uses = {role: _find_use(unchosen, analysis, role, faults.get(role, ""), rules.get(role)) for role in roles}

@@ -11,10 +11,10 @@ _NUMBERS: Mapping[type, tuple[type, ...]] = {float: (float, int), int: (int,), b
 """What a default may be, by the type of its value: a whole number stands for a number of fractions."""
 
 
-def check_names(names: Collection[str], taken: Collection[str]) -> None:
+def check_names(names: Collection[str], reserved_names: Collection[str]) -> None:
     """Raise TypeError for an input, output or value that hides what every node has."""
     for name in names:
-        if name in taken:
+        if name in reserved_names:
             raise TypeError(f"'{name}' is a name that every node uses for something else: choose another one")
 
 

@@ -72,10 +72,8 @@ class Transform(Filter):
         else:
             whole = 1.0 - lean * fall
             wide, high = (part * math.copysign(max(abs(whole), _SMALLEST), whole) for part in (wide, high))
-            a, b, c, d = (
-                (cos + lean * sin) / wide,
-                (sin - lean * cos) / wide,
-                (-sin - fall * cos) / high,
-                (cos - fall * sin) / high,
-            )
+            a = (cos + lean * sin) / wide
+            b = (sin - lean * cos) / wide
+            c = (-sin - fall * cos) / high
+            d = (cos - fall * sin) / high
         return (a, b, pivot[0] - a * moved[0] - b * moved[1], c, d, pivot[1] - c * moved[0] - d * moved[1])

@@ -68,10 +68,8 @@ class Histogram(Filter):
         """The codes of three percentiles, as one pixel."""
         triple = Vector(width=3)
         ends = draw.reduce(draw.point("histogram_ends", result=Vector(width=2), light=light), "max")
-        below, above = (
-            draw.point("histogram_least", result=triple, ends=ends),
-            draw.point("histogram_most", result=triple, ends=ends),
-        )
+        below = draw.point("histogram_least", result=triple, ends=ends)
+        above = draw.point("histogram_most", result=triple, ends=ends)
         shares = tuple(0.01 * part for part in (self.low_percentile, self.middle_percentile, self.high_percentile))
         size = (ceil(light.size[0] / _BLOCK), ceil(light.size[1] / _BLOCK))
         for _ in range(_STEPS):

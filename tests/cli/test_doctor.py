@@ -71,7 +71,7 @@ def test_no_sentence_names_a_user(cli, home, monkeypatch, tmp_path_factory):
     ],
 )
 def test_what_of_a_path_is_hidden(home, sentence, shown):
-    assert doctor.hide_users(sentence.format(home=home)) == shown.format(home=home)
+    assert doctor.hide_users(sentence.format(home=home), doctor.list_homes()) == shown.format(home=home)
 
 
 def test_a_missing_package_is_named(cli, monkeypatch):

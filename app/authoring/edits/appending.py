@@ -60,9 +60,9 @@ def _estimate_size(graph: Graph, element: ElementId) -> tuple[float, float]:
     width, height = element_size(graph, element)
     if element not in graph.nodes or entry(graph, element).get("collapsed") is True:
         return width, height
-    face = signature(graph.nodes[element])
-    fields = [value for value in face.values.values() if not value.folded]
-    rows = max(len(face.unfolded_inputs), len(face.outputs)) + min(len(fields), _MOST_FIELDS)
+    interface = signature(graph.nodes[element])
+    fields = [value for value in interface.values.values() if not value.folded]
+    rows = max(len(interface.unfolded_inputs), len(interface.outputs)) + min(len(fields), _MOST_FIELDS)
     return width, _HEADER + rows * _ROW + _PICTURE
 
 

@@ -70,13 +70,13 @@ def _route_links(
 def _with_dots(graph: Graph, dots: Mapping[Port, tuple[Place, ...]]) -> Graph:
     """A graph where some links pass new dots and no others; those at one place on links of one socket are the same."""
     graph = tidy_routes(with_routes(graph, dict.fromkeys(dots, ())))
-    taken = {dot.name for dot in list_decor(graph, "dot")}
-    fresh = (name for name in map("d{}".format, count(1)) if name not in taken)
+    used_names = {dot.name for dot in list_decor(graph, "dot")}
+    free_names = (name for name in map("d{}".format, count(1)) if name not in used_names)
     names: dict[tuple[Port, Place], str] = {}
     for target in sorted(dots):
         for place in dots[target]:
             if (graph.links[target], place) not in names:
-                names[graph.links[target], place] = next(fresh)
+                names[graph.links[target], place] = next(free_names)
     graph = with_places(graph, {ElementId.of("dot", name): place for (_, place), name in names.items()})
     routes = {target: [names[graph.links[target], place] for place in places] for target, places in dots.items()}
     return with_routes(graph, routes)

@@ -20,11 +20,11 @@ def pin_height(graph: Graph, port: Port, output: bool, measured: Pins | None = N
     item = graph.nodes.get(port.node)
     if item is None or entry(graph, ElementId(port.node)).get("collapsed") is True:
         return HEADER / 2
-    face = signature(item)
-    inputs = face.unfolded_inputs
-    names = [*face.outputs] if output else [*inputs]
+    interface = signature(item)
+    inputs = interface.unfolded_inputs
+    names = [*interface.outputs] if output else [*inputs]
     if port.socket in names:
         return HEADER + ROW * (names.index(port.socket) + 0.5)
-    if output or port.socket not in face.values:
+    if output or port.socket not in interface.values:
         return HEADER / 2
-    return HEADER + ROW * (max(len(inputs), len(face.outputs)) + 0.5)
+    return HEADER + ROW * (max(len(inputs), len(interface.outputs)) + 0.5)

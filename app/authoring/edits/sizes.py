@@ -23,8 +23,8 @@ def element_size(graph: Graph, element: ElementId, measured: Sizes | None = None
         return _number(width, COMMENT[0]), _number(height, COMMENT[1])
     if element not in graph.nodes or facts.get("collapsed") is True:
         return WIDTH, HEADER
-    face = signature(graph.nodes[element])
-    return WIDTH, HEADER + ROW * max(len(face.unfolded_inputs) + len(face.outputs), 1)
+    interface = signature(graph.nodes[element])
+    return WIDTH, HEADER + ROW * max(len(interface.unfolded_inputs) + len(interface.outputs), 1)
 
 
 def _number(item: object, default: float) -> float:

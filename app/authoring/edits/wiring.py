@@ -30,10 +30,10 @@ def why_not_linkable(graph: Graph, source: Port, target: Port) -> str | None:
 
 def list_targets(item: Item, id: str) -> tuple[Port, ...]:
     """The sockets of a node that take a link: inputs, then values."""
-    face = signature(item)
-    wireable = face.values if face.pointwise or not isinstance(item, Node) else {}
+    interface = signature(item)
+    wireable = interface.values if interface.pointwise or not isinstance(item, Node) else {}
     values = [name for name, value in wireable.items() if value.wireable]
-    return tuple(Port(id, name) for name in (*face.inputs, *values))
+    return tuple(Port(id, name) for name in (*interface.inputs, *values))
 
 
 def first_target(graph: Graph, source: Port, id: str, values: bool = True) -> Port:
@@ -59,8 +59,8 @@ def first_target(graph: Graph, source: Port, id: str, values: bool = True) -> Po
 
 def _is_folded(graph: Graph, port: Port) -> bool:
     """True for a port of the mask that many nodes have, which is linked only where the user asks for it."""
-    face = signature(graph.node(port.node))
-    item = face.inputs.get(port.socket) or face.values.get(port.socket)
+    interface = signature(graph.node(port.node))
+    item = interface.inputs.get(port.socket) or interface.values.get(port.socket)
     return item is not None and item.folded
 
 
@@ -243,8 +243,8 @@ def _wireable_ends(kind: type[Node]) -> list[Socket | Value]:
 
 
 def _list_linked_inputs(graph: Graph, id: str) -> list[str]:
-    face = signature(graph.node(id))
-    names = face.inputs or sorted(port.socket for port in graph.links if port.node == id)
+    interface = signature(graph.node(id))
+    names = interface.inputs or sorted(port.socket for port in graph.links if port.node == id)
     return [name for name in names if Port(id, name) in graph.links]
 
 

@@ -100,10 +100,10 @@ class DisplayedImages:
         picture = self._parts.get(name)
         return picture and picture.image
 
-    def show(self, name: str, port: Port, request: PreviewRequest, face: FrameImage) -> None:
+    def show(self, name: str, port: Port, request: PreviewRequest, frame_image: FrameImage) -> None:
         """Set the picture of a panel."""
-        surface, before = face.surface, self._pictures.get(name)
-        self._pictures[name] = self._lease_image(before, port, request, face, surface.frame_size)
+        surface, before = frame_image.surface, self._pictures.get(name)
+        self._pictures[name] = self._lease_image(before, port, request, frame_image, surface.frame_size)
         _drop(before)
         _drop(self._parts.pop(name, None))
 
@@ -111,19 +111,19 @@ class DisplayedImages:
         """Show a part of new pictures until the whole is ready."""
         for name, port in ports.items():
             before = self._parts.get(name)
-            face = self.describe(name, port, request, plan, part.size)
-            self._parts[name] = self._lease_image(before, port, request, face, part.size)
+            frame_image = self.describe(name, port, request, plan, part.size)
+            self._parts[name] = self._lease_image(before, port, request, frame_image, part.size)
             _drop(before)
 
     def _lease_image(
-        self, before: _LeasedImage | None, port: Port, request: PreviewRequest, face: FrameImage, size: Size
+        self, before: _LeasedImage | None, port: Port, request: PreviewRequest, frame_image: FrameImage, size: Size
     ) -> _LeasedImage:
         """The picture of a panel, with a lease so that its texture is not used again.
 
         The revision grows only with other pixels: what is computed of a picture, such as a scope, stays valid when the
         same picture is shown again.
         """
-        surface = face.surface
+        surface = frame_image.surface
         same = before is not None and before.image.key == surface.key
         lease = self._runner.create_lease()
         lease.add(surface.key)
@@ -135,7 +135,7 @@ class DisplayedImages:
                 port,
                 texture.handle,
                 size,
-                face.full_size,
+                frame_image.full_size,
                 request.scale,
                 pixel_kind(request.graph, port, surface.channels),
                 surface.channels,
@@ -143,7 +143,7 @@ class DisplayedImages:
                 before.image.revision if before is not None and same else self._revision,
                 request.frame,
                 surface.window.start if surface.window else (0, 0),
-                face.default_view,
+                frame_image.default_view,
                 surface.pixel_aspect,
             ),
             lease,

@@ -55,18 +55,18 @@ class FrameCache:
 
     # --- frames ------------------------------------------------------------------------------------------------------
 
-    def add_frame(self, frame: int, faces: FrameImages, renderer: Renderer, current_frame: int) -> None:
+    def add_frame(self, frame: int, frame_images: FrameImages, renderer: Renderer, current_frame: int) -> None:
         """Add a rendered frame; `now` is the current one."""
         if self.closed:
             return
         self._last_lookup = (), 0.0, ()
-        faces = {**self._images_by_frame.get(frame, {}), **faces}
+        frame_images = {**self._images_by_frame.get(frame, {}), **frame_images}
         self._release_frame(frame)
-        self._images_by_frame[frame] = faces
+        self._images_by_frame[frame] = frame_images
         lease = renderer.runner.create_lease()
-        for face in faces.values():
-            if face.surface.key in renderer.runner.textures:
-                lease.add(face.surface.key)
+        for frame_image in frame_images.values():
+            if frame_image.surface.key in renderer.runner.textures:
+                lease.add(frame_image.surface.key)
         self._leases[frame] = lease
         self._make_room(int(renderer.runner.textures.budget * SHARE), current_frame)
         while len(self._images_by_frame) > MOST_FRAMES:
@@ -74,8 +74,8 @@ class FrameCache:
 
     def find(self, frame: int, names: Mapping[str, Port], renderer: Renderer) -> FrameImages | None:
         """The pictures of a frame for these panels, if all are on the device."""
-        faces = self._images_by_frame.get(frame)
-        return faces if faces is not None and is_on_device(faces, names, renderer) else None
+        frame_images = self._images_by_frame.get(frame)
+        return frame_images if frame_images is not None and is_on_device(frame_images, names, renderer) else None
 
     def list_frames(self, names: Mapping[str, Port], renderer: Renderer) -> tuple[int, ...]:
         """The frames that are on the device, in order; frames that were dropped are noticed a moment later."""
@@ -83,7 +83,11 @@ class FrameCache:
         asked_names, looked_up_at, frames = self._last_lookup
         if asked_names != tuple(names) or time_now - looked_up_at > LOOK_AGAIN:
             frames = tuple(
-                sorted(frame for frame, faces in self._images_by_frame.items() if is_on_device(faces, names, renderer))
+                sorted(
+                    frame
+                    for frame, frame_images in self._images_by_frame.items()
+                    if is_on_device(frame_images, names, renderer)
+                )
             )
             self._last_lookup = tuple(names), time_now, frames
         return frames
@@ -122,9 +126,9 @@ class FrameCache:
 
     def _sizes(self) -> dict[str, int]:
         return {
-            face.surface.key: count_device_bytes(face.surface.nbytes)
+            frame_image.surface.key: count_device_bytes(frame_image.surface.nbytes)
             for frame in self._leases
-            for face in self._images_by_frame[frame].values()
+            for frame_image in self._images_by_frame[frame].values()
         }
 
     def _make_room(self, most: int, current_frame: int) -> None:
@@ -149,7 +153,7 @@ class FrameCache:
         del self._images_by_frame[frame]
 
 
-def is_on_device(faces: FrameImages, names: Mapping[str, Port], renderer: Renderer) -> bool:
+def is_on_device(frame_images: FrameImages, names: Mapping[str, Port], renderer: Renderer) -> bool:
     """True if the pictures of all these panels are on the device."""
     textures = renderer.runner.textures
-    return all(name in faces and faces[name].surface.key in textures for name in names)
+    return all(name in frame_images and frame_images[name].surface.key in textures for name in names)

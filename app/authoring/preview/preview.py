@@ -382,13 +382,13 @@ class Preview:
         self.faults = MappingProxyType({path: str(error) for path, error in mistakes.items()})
 
     def _publish_images(self, work: PreviewWork, job: PictureJob, plan: Plan) -> None:
-        request, faces = job.request, dict[str, FrameImage]()
+        request, frame_images = job.request, dict[str, FrameImage]()
         for name, port in job.ports.items():
             surface = plan.surfaces[plan.outputs[name]]
-            faces[name] = self._images.describe(name, port, request, plan, surface.frame_size)
+            frame_images[name] = self._images.describe(name, port, request, plan, surface.frame_size)
             if not job.ahead:
-                self._images.show(name, port, request, faces[name])
-        request.frame_cache.add_frame(job.frame, faces, self.renderer, work.request.frame)
+                self._images.show(name, port, request, frame_images[name])
+        request.frame_cache.add_frame(job.frame, frame_images, self.renderer, work.request.frame)
         job.lease.close()
         if job.ahead:
             return

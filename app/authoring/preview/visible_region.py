@@ -80,10 +80,8 @@ def find_visible_part(
     """
     if request.frame_cache.needs_history:
         return None
-    plan, textures = (
-        renderer.compile(request.graph, request.render_request(ports, request.frame)),
-        renderer.runner.textures,
-    )
+    plan = renderer.compile(request.graph, request.render_request(ports, request.frame))
+    textures = renderer.runner.textures
     surfaces = [plan.surfaces[number] for number in plan.outputs.values()]
     size = scale_size(glimpse.picture, request.scale)
     if plan.memories or plan.tiling is not None or any(surface.frame_size != size for surface in surfaces):

@@ -42,8 +42,8 @@ def check_options(size: object, edge: object, result: object, overlap: object) -
         "result": (result, Socket, "the type of the picture"),
         "overlap": (overlap, (int, tuple, Reach, Mapping), "how far the function reads"),
     }
-    for name, (given, kind, meaning) in options.items():
-        if given is not None and not isinstance(given, kind):
+    for name, (argument, expected_type, meaning) in options.items():
+        if argument is not None and not isinstance(argument, expected_type):
             raise TypeError(
                 f"'{name}' is an option of the draw itself, {meaning}: give the parameter of the GLSL function another "
                 "name"

@@ -96,12 +96,12 @@ def reschedule(before: ScheduleRecord, program: LoweredProgram, library: Library
     changed = find_changed_numbers(before.program, program)
     if changed is None:
         return None
-    plan, target, numbers = before.plan, before.plan.target, {ref: number for number, ref in enumerate(before.texels)}
-    frame_changed, finder = (
-        program.frame != before.program.frame,
-        PassFingerprints(program, library, target, before.texels),
-    )
-    passes, fingerprints, surfaces, keys = [*plan.passes], [*before.fingerprints], [*plan.surfaces], dict(before.keys)
+    plan, target = before.plan, before.plan.target
+    numbers = {ref: number for number, ref in enumerate(before.texels)}
+    frame_changed = program.frame != before.program.frame
+    find_fingerprints = PassFingerprints(program, library, target, before.texels).of
+    passes, fingerprints = [*plan.passes], [*before.fingerprints]
+    surfaces, keys = [*plan.surfaces], dict(before.keys)
     changed_passes = [
         number
         for number, fused in enumerate(before.passes)
@@ -112,7 +112,7 @@ def reschedule(before: ScheduleRecord, program: LoweredProgram, library: Library
         fused = before.passes[number]
         item = emit(program, fused, library, target, before.texels)
         passes[number] = _make_pass(program, fused, item, numbers, library)
-        fingerprints[number] = finder.of(fused)
+        fingerprints[number] = find_fingerprints(fused)
     sources = [ref for ref in numbers if ref.op in changed]
     for ref in update_keys(keys, program, sources, fingerprints, changed_passes):
         if ref in numbers:

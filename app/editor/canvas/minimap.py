@@ -69,10 +69,8 @@ class Minimap:
             rounded = 1.0 if height >= _ROUNDED else 0.0
             draw.add_rect_filled((x, y), (x + max(width, 2.0), y + max(height, 1.5)), color, rounded)
         visible = brush.visible
-        low, high = (
-            (left + visible[0] * scale, top + visible[1] * scale),
-            (left + visible[2] * scale, top + visible[3] * scale),
-        )
+        low = (left + visible[0] * scale, top + visible[1] * scale)
+        high = (left + visible[2] * scale, top + visible[3] * scale)
         draw.push_clip_rect(rect[:2], rect[2:], True)
         draw.add_rect_filled(low, high, u32(palette.text, 0.06), 2.0)
         draw.add_rect(low, high, u32(palette.text, 0.55), 2.0)

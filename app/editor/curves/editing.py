@@ -109,31 +109,33 @@ def remove_keys(animation: Animations, spots: Collection[Spot]) -> dict[Port, Ke
     return {port: _get_keys(animation, port).remove(*frames) for port, frames in group_spots(animation, spots).items()}
 
 
-def interpolate_keys(animation: Animations, spots: Collection[Spot], how: Interpolation) -> dict[Port, Keys]:
+def interpolate_keys(animation: Animations, spots: Collection[Spot], interpolation: Interpolation) -> dict[Port, Keys]:
     """Set the interpolation of the selected keys; switches always hold."""
     return {
-        port: keys.with_interpolation(frames, how)
+        port: keys.with_interpolation(frames, interpolation)
         for port, frames in group_spots(animation, spots).items()
         if (keys := _get_keys(animation, port)).keys[0].channels
     }
 
 
-def extrapolate_keys(animation: Animations, ports: Collection[Port], how: Extrapolation) -> dict[Port, Keys]:
+def extrapolate_keys(animation: Animations, ports: Collection[Port], extrapolation: Extrapolation) -> dict[Port, Keys]:
     """Set what values do before the first and after the last key."""
-    return {port: replace(keys, outside=how) for port in ports if isinstance(keys := animation.get(port), Keys)}
+    return {
+        port: replace(keys, outside=extrapolation) for port in ports if isinstance(keys := animation.get(port), Keys)
+    }
 
 
-def ease_keys(animation: Animations, spots: Collection[Spot], how: Ease) -> dict[Port, Keys]:
+def ease_keys(animation: Animations, spots: Collection[Spot], ease: Ease) -> dict[Port, Keys]:
     """Ease the selected keys: flat handles before ("in"), after ("out") or on both sides."""
     new_keys: dict[Port, Keys] = {}
     for port, frames in group_spots(animation, spots).items():
         keys = _get_keys(animation, port)
         for frame in frames:
             place = keys.frames.index(frame)
-            if how != "out" and place > 0:
+            if ease != "out" and place > 0:
                 keys = convert_to_bezier(keys, place - 1)
                 keys = keys.with_handles(frame, left=_make_flat_handle(keys, place, -1))
-            if how != "in" and place + 1 < len(keys.keys):
+            if ease != "in" and place + 1 < len(keys.keys):
                 keys = convert_to_bezier(keys, place)
                 keys = keys.with_handles(frame, right=_make_flat_handle(keys, place, 1))
         new_keys[port] = keys
@@ -258,17 +260,17 @@ def with_number(keys: Keys, frame: float, channel: int, number: float) -> Keys:
     )
 
 
-def _lift_key(key: Key, which: Collection[int], lift: float, low: float, high: float) -> Key:
-    return replace(key, value=_change_value(key, which, lambda part: min(max(part + lift, low), high)))
+def _lift_key(key: Key, channels: Collection[int], lift: float, low: float, high: float) -> Key:
+    return replace(key, value=_change_value(key, channels, lambda part: min(max(part + lift, low), high)))
 
 
-def _change_value(key: Key, which: Collection[int], change: Callable[[float], float]) -> Scalar:
+def _change_value(key: Key, channels: Collection[int], change: Callable[[float], float]) -> Scalar:
     """The value of a key with other numbers in some channels; a switch is on from a half."""
     if isinstance(key.value, bool):
         return change(float(key.value)) >= 0.5
     if not key.channels:
         return key.value
-    parts = tuple(change(part) if place in which else part for place, part in enumerate(key.channels))
+    parts = tuple(change(part) if place in channels else part for place, part in enumerate(key.channels))
     if isinstance(key.value, tuple):
         return parts
     return round_keys(parts[0]) if isinstance(key.value, int) else parts[0]

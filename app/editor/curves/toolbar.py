@@ -86,11 +86,11 @@ def _make_view_tools(context: CurvesContext) -> list[_CurveTool]:
     """The modes, the filter of rows, and the menu that animates another value."""
     state, square = context.curves, imgui.get_frame_height()
 
-    def make_mode_tool(which: Mode, icon: str, label: str) -> _CurveTool:
+    def make_mode_tool(mode: Mode, icon: str, label: str) -> _CurveTool:
         def draw() -> None:
             keys = display_shortcut(context.actions.shortcut("keys.mode"))
-            if quiet_button(context, icon, f"button keys {which}", f"{label} ({keys})", lit=state.mode == which):
-                state.mode = which
+            if quiet_button(context, icon, f"button keys {mode}", f"{label} ({keys})", lit=state.mode == mode):
+                state.mode = mode
 
         return _CurveTool(square, draw)
 

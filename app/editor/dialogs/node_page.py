@@ -57,7 +57,7 @@ class NodePage:
             self._context.dialogs.open.discard("node")
 
     def _draw_page(self, id: str, item: Item) -> None:
-        palette, face = self._context.palette, signature(item)
+        palette, interface = self._context.palette, signature(item)
         with font(self._context, "bold", 20.0):
             imgui.text_unformatted(head_type(item.title) if isinstance(item, Node) else id)
         height = imgui.get_content_region_avail().y - imgui.get_frame_height_with_spacing()
@@ -65,20 +65,20 @@ class NodePage:
         for paragraph in describe_item(item):
             draw_wrapped(palette.text, paragraph)
             imgui.spacing()
-        self._draw_pictures(id, face)
+        self._draw_pictures(id, interface)
         if isinstance(item, Node):
             self._draw_strip(type(item))
         inputs = [
             (name_value(name), translate(socket.doc) or translate(socket.kind, "kind"))
-            for name, socket in face.unfolded_inputs.items()
+            for name, socket in interface.unfolded_inputs.items()
         ]
         outputs = [
             (name_value(name), translate(output.doc) or translate(output.kind, "kind"))
-            for name, output in face.outputs.items()
+            for name, output in interface.outputs.items()
         ]
         values = [
             (name_value(value.label or name), describe_value(value, describe_default(value)))
-            for name, value in face.values.items()
+            for name, value in interface.values.items()
             if not value.folded
         ]
         for title, rows in (
@@ -141,10 +141,10 @@ class NodePage:
             imgui.text_colored(vec4(self._context.palette.accent), title)
             draw_wrapped(self._context.palette.dim, text)
 
-    def _draw_pictures(self, id: str, face: Signature) -> None:
+    def _draw_pictures(self, id: str, interface: Signature) -> None:
         """Draw what goes into the first input, and what comes out, where the graph has pictures of both."""
         session, scale = self._context.session, ui_scale()
-        before = find_picture_before(session.graph, id, face)
+        before = find_picture_before(session.graph, id, interface)
         prefix = "".join(f"{group}/" for group in session.place)
         paths = [
             (title, prefix + path) for title, path in ((translate("Before"), before), (translate("After"), id)) if path
@@ -191,9 +191,9 @@ def describe_item(item: Item) -> tuple[str, ...]:
     return describe_type(type(item)) if isinstance(item, Node) else ()
 
 
-def find_picture_before(graph: Graph, id: str, face: Signature) -> str:
+def find_picture_before(graph: Graph, id: str, interface: Signature) -> str:
     """The element that feeds the first linked input of a node, as the paths of thumbnails name it; "" for none."""
-    for name in face.unfolded_inputs:
+    for name in interface.unfolded_inputs:
         source = graph.links.get(Port(id, name))
         if source is not None:
             return str(source) if source.node == INPUTS else source.node

@@ -78,13 +78,13 @@ def find_height(graph: Graph, shown: int) -> int:
 
 def common(graph: Graph, ids: tuple[str, ...]) -> tuple[Value, ...]:
     """The values that all nodes have in common by name and type, as the first node declares them."""
-    faces = [signature(item) for id in ids if not isinstance(item := graph.nodes[id], Unknown)]
-    if len(faces) < len(ids) or not faces:
+    interfaces = [signature(item) for id in ids if not isinstance(item := graph.nodes[id], Unknown)]
+    if len(interfaces) < len(ids) or not interfaces:
         return ()
     return tuple(
         value
-        for name, value in faces[0].values.items()
-        if all(name in face.values and _alike(face.values[name], value) for face in faces[1:])
+        for name, value in interfaces[0].values.items()
+        if all(name in interface.values and _alike(interface.values[name], value) for interface in interfaces[1:])
     )
 
 

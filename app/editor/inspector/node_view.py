@@ -44,8 +44,8 @@ class NodeView:
         """Draw one node: header, values, inputs."""
         session = rows.context.session
         item = session.graph.nodes[id]
-        face = signature(item)
-        rows.fit((translate("name", "value"), *map(name_value, face.unfolded_inputs), *_list_labels(face)))
+        interface = signature(item)
+        rows.fit((translate("name", "value"), *map(name_value, interface.unfolded_inputs), *_list_labels(interface)))
         draw_heading(
             rows, title_of(item), rows.palette.category(_category(item)), lambda: self._draw_buttons(rows, id, item), 3
         )
@@ -68,20 +68,20 @@ class NodeView:
         if isinstance(item, Unknown):
             rows.note(translate("This node type is not installed. The node does nothing and is saved unchanged."))
             return
-        if face.values:
+        if interface.values:
             rows.draw_heading(translate("Controls") if isinstance(item, Group) else translate("Values"))
         if isinstance(item, Node) and render_path(item):
             self._renders.draw(rows, id, item)
         else:
-            self._values.draw_wheels(rows, id, face.values.values())
-            for name, declaration in face.values.items():
+            self._values.draw_wheels(rows, id, interface.values.values())
+            for name, declaration in interface.values.items():
                 if not declaration.folded:
                     self._values.draw(rows, (Port(id, name),), declaration)
-        if face.unfolded_inputs:
+        if interface.unfolded_inputs:
             rows.draw_heading(translate("Inputs"))
-        for name, socket in face.unfolded_inputs.items():
+        for name, socket in interface.unfolded_inputs.items():
             _input(rows, Port(id, name), socket)
-        self._draw_mask(rows, (id,), [declaration for declaration in face.values.values() if declaration.folded])
+        self._draw_mask(rows, (id,), [declaration for declaration in interface.values.values() if declaration.folded])
 
     def several(self, rows: Rows, ids: tuple[str, ...]) -> None:
         """Draw the values that several nodes have in common; the first node is the active one."""
@@ -191,9 +191,9 @@ class NodeView:
             context.places[f"button local {id}"] = item_rect()
 
 
-def _list_labels(face: Signature) -> list[str]:
+def _list_labels(interface: Signature) -> list[str]:
     """What the values of a node are called, without those of its mask."""
-    values = [value for value in face.values.values() if not value.folded]
+    values = [value for value in interface.values.values() if not value.folded]
     fields = [field for value in values if value.items for kind in value.items.kinds for field in kind.declarations]
     return [name_value(value.label or value.name) for value in (*values, *fields)]
 

@@ -26,9 +26,9 @@ def find_lengths(document: Record) -> dict[int, dict[str, int]]:
     lengths: dict[int, dict[str, int]] = {}
     for plan in list_plans(document):
         for record in plan["passes"]:
-            known = lengths.setdefault(record["program"], {})
+            longest = lengths.setdefault(record["program"], {})
             for name, slot in _list_slots(record):
-                known[name] = max(known.get(name, 0), len(document["slots"][slot]["base"]))
+                longest[name] = max(longest.get(name, 0), len(document["slots"][slot]["base"]))
     return lengths
 
 
@@ -149,8 +149,8 @@ def _list_slots(record: Record) -> Iterable[tuple[str, int]]:
     return [*record["uniforms"].items(), *weights]
 
 
-def _write_bindings(own: ShaderPass, given: Mapping[str, int]) -> list[Record]:
-    return [{"property": own.pictures[name], "number": given[name]} for name in given if name in own.pictures]
+def _write_bindings(own: ShaderPass, numbers: Mapping[str, int]) -> list[Record]:
+    return [{"property": own.pictures[name], "number": numbers[name]} for name in numbers if name in own.pictures]
 
 
 def _write_size(surface: Record) -> Record:

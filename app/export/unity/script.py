@@ -24,9 +24,9 @@ def write_feature(document: Record, name: str, folder: str, about: str, notes: S
     fields: list[str] = []
     knobs: list[str] = []
     types: list[str] = []
-    taken: set[str] = set()
+    used_names: set[str] = set()
     for control in document["controls"]:
-        own = _choose_name(control["name"], taken)
+        own = _choose_name(control["name"], used_names)
         fields += _write_field(own, control)
         knobs += _write_knobs(own, control)
         if control["kind"] == "choice":
@@ -34,7 +34,7 @@ def write_feature(document: Record, name: str, folder: str, about: str, notes: S
     first, last = document["frames"]
     frame: list[str] = []
     if last > first:
-        own = _choose_name("frame", taken)
+        own = _choose_name("frame", used_names)
         note = _write_note("The frame that is held. The lowest value lets time run.")
         fields += [note, f"[Range({first - 1}, {last})] public int {own} = {first - 1};"]
         frame = ["", "protected override int ChooseFrame()", "{", f"    return {_FIELDS}.{own};", "}"]
@@ -69,13 +69,13 @@ def _indent(lines: Sequence[str]) -> list[str]:
     return [f"    {line}" if line else line for line in lines]
 
 
-def _choose_name(name: str, taken: set[str]) -> str:
+def _choose_name(name: str, used_names: set[str]) -> str:
     """A name of a field, as C# has it: film_grain is filmGrain. Keywords are allowed behind an @."""
     joined = write_class_name(name)
     own = joined[0].lower() + joined[1:]
-    while own in taken:  # names may differ in marks that names here have not
+    while own in used_names:  # names may differ in marks that names here have not
         own += "_"
-    taken.add(own)
+    used_names.add(own)
     return f"@{own}"
 
 

@@ -172,10 +172,8 @@ def amplify_difference(actual: Array, expected: Array, gain: float | None = None
     Without a gain the largest difference is made 1. A difference of alpha is added as gray. Magenta is where one
     picture is larger than the other, or not finite where the other is.
     """
-    actual_numbers, expected_numbers = (
-        _check_picture(actual, "actual").astype(np.float64),
-        _check_picture(expected, "expected").astype(np.float64),
-    )
+    actual_numbers = _check_picture(actual, "actual").astype(np.float64)
+    expected_numbers = _check_picture(expected, "expected").astype(np.float64)
     height, width = (max(sides) for sides in zip(actual_numbers.shape[:2], expected_numbers.shape[:2], strict=True))
     first, second = (_pad_to(item, height, width) for item in (actual_numbers, expected_numbers))
     broken = np.any(_find_broken(first, second), axis=2)

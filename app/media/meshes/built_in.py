@@ -72,10 +72,8 @@ def make_surface(points: Callable[[Array, Array], Array], across: int, down: int
     length = np.linalg.norm(normals, axis=1, keepdims=True)
     normals = np.divide(normals, length, out=np.zeros_like(normals), where=length > 0.0)
     corner = (np.arange(down)[:, None] * (across + 1) + np.arange(across)).ravel()
-    lower_triangles, upper_triangles = (
-        [corner, corner + 1, corner + across + 2],
-        [corner, corner + across + 2, corner + across + 1],
-    )
+    lower_triangles = [corner, corner + 1, corner + across + 2]
+    upper_triangles = [corner, corner + across + 2, corner + across + 1]
     return MeshPart(
         places,
         normals,

@@ -268,16 +268,15 @@ def _encode_picture(
     """
     if array.shape[2] < 3:
         array = array[..., :1].repeat(3, axis=2)
-    if format in ("hdr", "jpeg", "dpx") or (array.shape[2] == 4 and bool((array[..., 3] == 1.0).all())):
-        array = array[..., :3]
+    # Colors of an opaque picture need not be divided by its alpha, so it is looked at before they are encoded.
+    array = array[..., :3] if format in ("hdr", "jpeg", "dpx") else _drop_opaque_alpha(array, 1.0)
     deep = precision == "float" and format in ("png", "tiff", "dpx")
     if format == "hdr":
         light = array if is_data else encoding.to_radiance(array)
         array = np.nan_to_num(np.maximum(light, 0.0), nan=0.0).astype(np.float32)
     else:
         array = encoding.to_codes(array, 16 if deep else 10 if format == "dpx" else 8, is_data=is_data, frame=frame)
-        if array.shape[2] == 4 and bool((array[..., 3] == np.iinfo(array.dtype).max).all()):
-            array = array[..., :3]  # a blurred alpha is 1 but for its last digits
+        array = _drop_opaque_alpha(array, np.iinfo(array.dtype).max)  # a blurred alpha is 1 but for its last digits
     spec = oiio.ImageSpec(array.shape[1], array.shape[0], array.shape[2], _STORED[array.dtype.name])
     if format == "tiff":
         spec.attribute("compression", compression)
@@ -295,6 +294,12 @@ def _encode_picture(
     if format == "png" and not is_data and encoding.display_space != SRGB:
         spec.attribute(COLOR_TAG, encoding.display_space)
     return EncodedPart(spec, np.ascontiguousarray(array))
+
+
+def _drop_opaque_alpha(array: Array, largest: float) -> Array:
+    """The array without its alpha where that is the largest number everywhere."""
+    is_opaque = array.shape[2] == 4 and bool((array[..., 3] == largest).all())
+    return array[..., :3] if is_opaque else array
 
 
 def _tag_display_space(spec: oiio.ImageSpec, format: str, name: str) -> None:

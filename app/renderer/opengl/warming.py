@@ -61,11 +61,9 @@ def _load() -> None:
     display_of = _function(
         egl, b"eglGetPlatformDisplayEXT", ctypes.c_void_p, ctypes.c_uint, ctypes.c_void_p, ctypes.c_void_p
     )
-    place, devices, count = (
-        os.environ.get("GLCONTEXT_DEVICE_INDEX", "0"),
-        (ctypes.c_void_p * _MOST_DEVICES)(),
-        ctypes.c_int(),
-    )
+    place = os.environ.get("GLCONTEXT_DEVICE_INDEX", "0")
+    devices = (ctypes.c_void_p * _MOST_DEVICES)()
+    count = ctypes.c_int()
     if query is None or display_of is None or not place.isdecimal():
         return
     if query(len(devices), ctypes.byref(devices), ctypes.byref(count)) and int(place) < count.value:
