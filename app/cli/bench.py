@@ -111,12 +111,13 @@ def bench(
         raise UsageError(f"{graph}: there is nothing to measure: the graph needs no pass")
     comparison = compare_with_baseline(benchmark, compare, sandbox) if compare else None
     slower = comparison.find_slower(highest_ratio) if comparison and highest_ratio is not None else ()
+    device = renderer.device
     if as_json:
-        print_json(_benchmark_facts(graph, benchmark, renderer.device.description, measured_frames, comparison, slower))
+        print_json(_benchmark_facts(graph, benchmark, device.description, measured_frames, comparison, slower))
     else:
-        _print_benchmark(benchmark, passes, renderer.device.target.software, repeats)
+        _print_benchmark(benchmark, passes, device.target.software, repeats)
         if comparison:
-            _print_comparison(comparison, slower, highest_ratio, renderer.device.description)
+            _print_comparison(comparison, slower, highest_ratio, device.description)
     return 1 if slower else 0
 
 

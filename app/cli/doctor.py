@@ -103,7 +103,7 @@ def list_homes() -> set[str]:
 
 
 def _examine_everything() -> Iterator[MachineCheck]:
-    """What was found. A thing that cannot be examined is a fault of its own."""
+    """All checks, with names of users still in their sentences. What cannot be examined is a fault of its own."""
     yield MachineCheck(
         "halation", "ok", f"{VERSION}, Python {platform.python_version()}, {platform.platform(terse=True)}"
     )

@@ -149,10 +149,7 @@ def render(
     destinations = parsing.parse_destinations(output or ())
     entries: tuple[RenderEntry, ...] = ()
     if each:
-        from ..renderer.jobs.entry_list import expand_entries, names_file
-
-        entries = expand_entries(each, files, settings, destinations, read_standard_input, sandbox)
-        settings = {name: text for name, text in settings.items() if not names_file(text)}
+        entries, settings = _expand_each(each, files, settings, destinations, sandbox)
         files, destinations = {}, ()
     job = RenderJob(
         graph=str(graph),
@@ -189,6 +186,20 @@ def render(
 
     options = ClusterOptions(cluster, parse_path_map(path_map or ()), priority, detach)
     return execute_on_cluster(job, options, parsing.parse_progress(progress), as_json)
+
+
+def _expand_each(
+    each: Sequence[str],
+    files: dict[str, str],
+    settings: dict[str, str],
+    destinations: Sequence[tuple[str, Path]],
+    sandbox: Sandbox,
+) -> "tuple[tuple[RenderEntry, ...], dict[str, str]]":
+    """An entry for each file of --each, and the settings that all of them share: those that name no file."""
+    from ..renderer.jobs.entry_list import expand_entries, names_file
+
+    entries = expand_entries(each, files, settings, destinations, read_standard_input, sandbox)
+    return entries, {name: text for name, text in settings.items() if not names_file(text)}
 
 
 def _check_files(graph: Path, output: Sequence[str] | None, each: Sequence[str] | None) -> None:

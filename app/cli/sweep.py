@@ -103,16 +103,12 @@ def sweep(
         return code
     bindings = resolve_inputs(opened_graph, parsing.parse_inputs(inputs))
     targets = parsing.find_targets(opened_graph, node)
-    frame_of_all = (
-        named_frames[0] if named_frames else LazyResourceProvider(sandbox).find_frames(opened_graph, bindings)[0]
-    )
+    frame_of_all = (named_frames or LazyResourceProvider(sandbox).find_frames(opened_graph, bindings))[0]
     shown_output = choose_output(opened_graph, show, node)
     shown_view = view or ("" if node else opened_graph.outputs[shown_output].view)
     count = len(sweeping.list_cells(opened_graph, sweep_axes, frame_of_all))
     _check_sheet(output, shown_view, sandbox)
-    cell_files = (
-        OutputSettings((("", cells),), view, precision=parsed_precision or "half") if cells is not None else None
-    )
+    cell_files = OutputSettings((("", cells),), view, precision=parsed_precision or "half") if cells else None
     request = RenderRequest(bindings, targets, canvas, proxy, precision=parsed_precision)
     title = f"{graph.stem if str(graph) != '-' else 'graph'}: {', '.join(axis.name for axis in sweep_axes)}"
     with open_batch(cells or output.parent, count, DEFAULT_BUDGET, sandbox=sandbox) as batch:
@@ -122,12 +118,7 @@ def sweep(
         sheet = sweeping.render_sweep(batch.renderer, opened_graph, sweep_axes, sweep_request, frame_of_all, batch.step)
         device = batch.device
     _write_sheet(output, sheet, sandbox)
-    seconds = time.perf_counter() - started
-    if as_json:
-        print_json(_sweep_facts(output, sheet, device, seconds))
-    else:
-        height, width = sheet.light.shape[:2]
-        print_note(f"{output}  {count} pictures, {width}x{height}, {seconds:.2f} s")
+    _report_sheet(output, sheet, device, time.perf_counter() - started, as_json)
     return 0
 
 
@@ -161,6 +152,15 @@ def _write_sheet(output: Path, sheet: SweepSheet, sandbox: Sandbox) -> None:
 
 def _add_dot(text: str) -> str:
     return text if text.startswith(".") else f".{text}"
+
+
+def _report_sheet(output: Path, sheet: SweepSheet, device: str, seconds: float, as_json: bool) -> None:
+    """Print what was written, in a line or as JSON."""
+    if as_json:
+        print_json(_sweep_facts(output, sheet, device, seconds))
+        return
+    height, width = sheet.light.shape[:2]
+    print_note(f"{output}  {len(sheet.cells)} pictures, {width}x{height}, {seconds:.2f} s")
 
 
 def _sweep_facts(output: Path, sheet: SweepSheet, device: str, seconds: float) -> dict[str, Any]:

@@ -28,7 +28,7 @@ _MAPPINGS = (dict, MappingProxyType, Mapping)
 _PLAIN: Mapping[type, Callable[[Any], str]] = MappingProxyType(
     {str: encode_basestring, int: int.__repr__, bool: lambda item: "true" if item else "false"}
 )
-"""What writes a scalar that JSON can hold whatever it is."""
+"""The functions that write scalars, by type. JSON can hold each value of these types, but not each float."""
 
 
 def pretty(document: Mapping[str, Any]) -> str:

@@ -95,7 +95,7 @@ class _DocumentLoader(Struct):
     parts: PartTally = field(default_factory=PartTally)
     expressions: dict[str, Expression] = field(default_factory=dict[str, Expression])  # each text is parsed once
     kinds: dict[str, type[Node] | None] = field(default_factory=dict[str, "type[Node] | None"])
-    """What `find_kind` found."""
+    """Node types by name, as `find_kind` has looked them up; None for unknown names."""
 
     def find_kind(self, type: str) -> builtins.type[Node] | None:
         """The node type of a name in the catalogue, which is asked once for each name; None if there is none."""

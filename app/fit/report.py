@@ -59,7 +59,7 @@ def make_strip(result: FitResult) -> Array:
 
 
 def describe_errors(result: FitResult) -> str:
-    """What has become of the difference, in words."""
+    """The difference from the reference before and after the search, in words."""
     if result.delta_e:
         before, after = result.delta_e
         return f"mean color difference {before:.2f} -> {after:.2f} (CIEDE2000; 1 can just be seen)"

@@ -39,7 +39,7 @@ class FitMeter:
     error: float = float("inf")
     """The error of the best point of the search that runs."""
     best: Array | None = None
-    """That point, None before anything was rendered."""
+    """The best point of that search; None before anything was rendered."""
     ended_by: str = ""
     """What ended the search early, or ""."""
 

@@ -17,7 +17,7 @@ MAX_SEEN = 10 * MAX_FINDINGS
 
 
 class Graded(Protocol):
-    """What `Enough` counts."""
+    """A finding that `Enough` counts."""
 
     @property
     def severity(self) -> Severity:

@@ -16,7 +16,7 @@ _NOTHING = Port("", "")
 
 
 class _SourceGraph(Protocol):
-    """What the walk needs of a graph."""
+    """A graph, as far as this walk reads it."""
 
     @property
     def nodes(self) -> Mapping[str, object]: ...

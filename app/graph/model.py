@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from types import MappingProxyType
-from typing import Any
+from typing import Any, cast
 
 from halation.nodes import ColorSettings, Kind, Missing, Node, Pointwise, Scalar, Size, Socket, Value
 from msgspec import Struct
@@ -192,12 +192,12 @@ _SCALARS = frozenset({str, int, float, bool, type(None)})
 def freeze(item: Any) -> Any:
     """A read-only copy of a JSON tree: objects as mapping proxies, lists as tuples."""
     if isinstance(item, (dict, Mapping)):  # a dict first: to ask whether something is a Mapping takes long
-        entries: Mapping[str, Any] = item
+        entries = cast("Mapping[str, Any]", item)
         return MappingProxyType(
             {key: part if type(part) in _SCALARS else freeze(part) for key, part in entries.items()}
         )
     if isinstance(item, (list, tuple)):
-        parts: Sequence[Any] = item
+        parts = cast("Sequence[Any]", item)
         return tuple([part if type(part) in _SCALARS else freeze(part) for part in parts])
     return item
 

@@ -145,7 +145,7 @@ class GraphChecker(Struct, dict=True, eq=False):
             yield problem, 0, code
 
     def _find_warnings(self, whole_graph: Graph) -> Iterator[Problem]:
-        """What rules and folders say of a graph without errors."""
+        """The warnings of rules, and of what lies beside the file, about a graph without errors."""
         for body, inside, at in bodies(whole_graph):
             sheet = GraphFacts(body)
             for check in CHECKS:

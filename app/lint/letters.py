@@ -25,7 +25,7 @@ _SHOWN = 8
 
 
 class Typesetter(Protocol):
-    """What sets text."""
+    """Makes outlines of texts."""
 
     def typeset(self, block: TextBlock) -> TypesetText: ...
 

@@ -213,7 +213,7 @@ class FrameRenderer:
         return self._plans[key]
 
     def _find_memories(self, begin: int, frame: int) -> Memories:
-        """What the frame before stores."""
+        """The memories that the frame before stores."""
         if frame <= begin:
             return {}
         if (begin, frame - 1) in self._memories:

@@ -14,7 +14,7 @@ LOOK_AGAIN = 1.0
 
 
 class FileVersions:
-    """What tells one version of a file from the next."""
+    """The versions of files: texts that change when the file does."""
 
     def __init__(self, sandbox: Sandbox) -> None:
         self._sandbox = sandbox

@@ -81,7 +81,7 @@ _MISSING: Mapping[str, str] = MappingProxyType(
         "dot": mark("there is no dot '{name}'"),
     }
 )
-"""What is said where an element of a kind is missing."""
+"""Messages for elements that do not exist, by kind."""
 
 
 def set_facts(graph: Graph, note: ElementId, **facts: object) -> Graph:

@@ -16,7 +16,7 @@ from ...renderer.jobs.render_entry import RenderEntry
 from ...resources.sandbox import Sandbox
 
 LIST_MARK = "@"
-"""What a text begins with that names a list of files."""
+"""The first character of a text that names a list of files."""
 
 
 class QueuedFiles(Struct, frozen=True):

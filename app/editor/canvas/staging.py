@@ -38,7 +38,7 @@ class SceneBuilder:
         default_factory=dict[str, tuple[Item, NodeFacts, NodeLayout]]
     )
     _language: str = field(default_factory=language)
-    """That of the words in the layouts."""
+    """The language in which the layouts were measured."""
     _links: object = None
     _linked_sockets: tuple[dict[str, set[str]], dict[str, set[str]]] = field(default_factory=lambda: ({}, {}))
     _faults: dict[tuple[Port, Port], tuple[Any, str]] = field(default_factory=dict[tuple[Port, Port], tuple[Any, str]])
@@ -186,7 +186,7 @@ def measure_comment(text: str, width: float) -> float:
 
 
 def _find_interface(graph: Graph, port: Port) -> object:
-    """What decides which links fit an element; only for comparison."""
+    """The sockets of an element as one object; as long as it stays equal, the same links fit."""
     if port.node == INPUTS:
         return graph.inputs.get(port.socket)
     if port.node == OUTPUTS:

@@ -21,7 +21,7 @@ class CodeState:
     fault_path: str = ""
     """The path of the node whose error the panel showed in the last frame; other panels need not repeat it."""
     next_fault_path: str = ""
-    """The same for the current frame, while it is drawn."""
+    """Becomes `fault_path` in the next frame: the panel sets it while it draws this one."""
 
     def begin_frame(self) -> None:
         """Call once a frame, before anything is drawn."""

@@ -85,7 +85,7 @@ class CatalogEntry:
     kind: str = ""
     """The category that gives the color, if not its own."""
     aliases: tuple[str, ...] = ()
-    """What other programs call it."""
+    """The names that other programs have for it."""
     values: tuple[tuple[str, Plain], ...] = ()
     """Values of the new node that are not its defaults."""
     translated: str = ""

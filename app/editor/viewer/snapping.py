@@ -12,7 +12,7 @@ _SNAP_DEGREES = 2.0
 """How near an angle must be to one that it snaps to. Chosen by feel."""
 
 FRACTIONS = (0.0, 1.0 / 3.0, 0.5, 2.0 / 3.0, 1.0)
-"""What attracts, as fractions of the width and the height."""
+"""Lines that points snap to, as fractions of the width and the height of the picture."""
 
 
 @dataclass(frozen=True)

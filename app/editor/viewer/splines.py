@@ -57,7 +57,7 @@ class SplineOutline:
     points_port: Port
     """The value with its points."""
     name: str
-    """That of the shape, or of the node."""
+    """The name of the shape, or of the node."""
     numbers: Row
     affine: Affine
     """From its points to pixels."""

@@ -63,7 +63,7 @@ class ViewerState:
     unsqueezes: bool = True
     """True shows pixels in their shape, as the pixel aspect ratio of the picture says."""
     pixel_aspect: float = 1.0
-    """That of the shown picture, as drawn last."""
+    """The pixel aspect ratio of the picture that was drawn last."""
     warn_clipping: bool = False
     warn_nonfinite: bool = True
     region: Box | None = None

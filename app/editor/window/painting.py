@@ -57,7 +57,7 @@ class _DrawnList(Struct):
 
     @property
     def memory(self) -> tuple[bytes, bytes, bytes]:
-        """All of it, to compare it with another frame."""
+        """The bytes of everything that was drawn, to compare two frames."""
         return self.vertices, self.indices, self.commands
 
     @property

@@ -206,7 +206,7 @@ def _write_surfaces(plan: Plan, phase: Phase) -> list[Record]:
 
 
 def _describe_held(axes: Sequence[VariantAxis], irregular_names: set[str]) -> dict[str, str]:
-    """What is said of each control that keeps its value."""
+    """Why controls keep their values in the package: a sentence for each, by its name."""
     reasons = {find_control_name(axis.knob): "it changes passes, as others do already" for axis in axes}
     reasons |= dict.fromkeys(sorted(irregular_names), "it moves outlines, and sorted tables of them are baked")
     return {name: f"keeps its value: {reason}" for name, reason in reasons.items() if name != FRAME}

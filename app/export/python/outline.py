@@ -59,11 +59,11 @@ class ScriptOutline:
     helpers: set[str] = field(default_factory=set[str])
     """Other functions that calls name."""
     choices: dict[tuple[str, str], set[str]] = field(default_factory=dict[tuple[str, str], "set[str]"])
-    """What nodes choose, by function and parameter."""
+    """The choices that nodes make, by function and parameter."""
     options: dict[tuple[str, str], set[str]] = field(default_factory=dict[tuple[str, str], "set[str]"])
-    """What they could choose."""
+    """All choices that they could make, by function and parameter."""
     switches: dict[tuple[str, str], set[bool]] = field(default_factory=dict[tuple[str, str], "set[bool]"])
-    """What is on or off, by function and parameter."""
+    """The values that switches of nodes have, by function and parameter."""
     result: str = ""
     uses_frame: bool = False
 

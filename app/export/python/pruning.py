@@ -255,7 +255,7 @@ class _Pruner:
         return (holds.pop() if holds else False) == is_positive
 
     def _list_possible(self, name: str) -> set[str] | None:
-        """All that a choice can be; None if nothing is known about it."""
+        """All texts that a choice can be; None if nothing is known about it."""
         if not self.known.choices.get(name):
             return None
         return self.known.choices[name] | (self.passed & self.known.options[name])

@@ -31,7 +31,7 @@ _OTHER_WORDS = MappingProxyType(
         "main(": "draw(",
     }
 )
-"""What Slang writes, and what all versions of ReShade FX know."""
+"""Names that Slang writes, and those that all versions of ReShade FX know instead."""
 
 
 def write_fx(text: str) -> HlslProgram:

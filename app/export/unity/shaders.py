@@ -32,7 +32,7 @@ class ShaderPass(Struct, frozen=True):
     groups: Mapping[str, int]
     """The numbers of a uniform in each of its rows."""
     count: int
-    """All rows."""
+    """The number of rows of all uniforms together."""
     pictures: Mapping[str, str]
     """The property of each picture and table, by the name that it has in the package."""
 

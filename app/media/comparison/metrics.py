@@ -249,6 +249,6 @@ def _gaussian_mean(channel: Array) -> Array:
 
 
 def _pad_to(array: Array, height: int, width: int) -> Array:
-    """The same on a larger canvas, NaN where there is nothing."""
+    """The array on a larger canvas, with NaN where it has no pixels."""
     around = ((0, height - array.shape[0]), (0, width - array.shape[1]), (0, 0))
     return np.pad(array, around, constant_values=nan)

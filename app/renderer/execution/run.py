@@ -100,7 +100,7 @@ class WholeRun(Run):
         self._decode_queue = start_decoding(find_needed_uploads(plan, self._needed_passes, self._requested, textures))
         self._lease = TextureLease(textures)
         self._bands: Generator[None, None, None] | None = None
-        """What is left of a pass of which a part is done."""
+        """The bands of the current pass that are still to be computed."""
         executor.begin_programs(plan, (plan.passes[index] for index in self._needed_passes))
         for key in self._readers:
             if key in textures:

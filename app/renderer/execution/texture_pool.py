@@ -46,7 +46,7 @@ class PooledTexture(Struct, eq=False):
 
     @property
     def device_bytes(self) -> int:
-        """What it takes on the device."""
+        """The bytes that it takes on the device."""
         return count_device_bytes(self.nbytes)
 
 
