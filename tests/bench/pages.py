@@ -5,7 +5,7 @@
     .venv/bin/python tests/bench/pages.py out/pages --table               # what was measured so far
 
 Each figure is written at once to `figures.jsonl` in the folder, and what is there is not measured again: it may be
-stopped at any time. Pages are kept in the folder. docs/export.md has the figures.
+stopped at any time. Pages are kept in the folder. docs/export-web.md has the figures.
 """
 
 from __future__ import annotations

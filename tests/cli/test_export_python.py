@@ -36,7 +36,7 @@ from numpy_scripts import (
 )
 from selection import list_cases
 
-PAGE = Path(__file__).parents[2] / "docs" / "export.md"
+PAGE = Path(__file__).parents[2] / "docs" / "export-python.md"
 
 DAILY, NIGHTLY = (0, 3), (1, 2)
 """Which values of each node are tried: 0 its defaults, others at random, 3 with all inputs linked."""
@@ -107,7 +107,7 @@ def test_a_script_makes_the_picture_of_a_preset(renderer, tmp_path: Path, name: 
 
 @pytest.mark.nightly
 def test_how_much_can_be_exported() -> None:
-    """The figures of docs/export.md."""
+    """The figures of docs/export-python.md."""
     exported = []
     for path in paths():
         graph = document.load(path, sandbox=UNRESTRICTED)
