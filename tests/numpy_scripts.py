@@ -51,7 +51,7 @@ def list_nodes() -> list[str]:
 
 
 def write_pictures(folder: Path) -> Path:
-    """Light from -0.1 to 5 with holes, half-covered pixels and glows; and fields and vectors; in one file."""
+    """Light from -0.1 to 5 with holes, half-covered pixels and glows; fields; and normals, some of them mixed."""
     random = np.random.default_rng(5)
     y, x = np.mgrid[:HEIGHT, :WIDTH]
     layers: dict[str, np.ndarray] = {}
@@ -64,17 +64,29 @@ def write_pictures(folder: Path) -> Path:
         layers[f"Image{number}"] = np.concatenate([color * glow[..., None], alpha[..., None]], axis=-1)
         layers[f"Field{number}"] = np.clip(0.6 + 0.6 * np.cos(x * 0.35 + number) * np.sin(y * 0.3), 0.0, 1.0)[..., None]
         vector = random.standard_normal((HEIGHT, WIDTH, 3))
-        layers[f"Vector{number}"] = vector / np.linalg.norm(vector, axis=-1, keepdims=True)
+        vector /= np.linalg.norm(vector, axis=-1, keepdims=True)
+        vector[::5, number::4] *= 0.9  # as antialiasing shortens normals
+        vector[:3, :5] = 0.0
+        layers[f"Vector{number}"] = vector
     pixels = {name: layer.astype(np.float32) for name, layer in layers.items()}
     return write_exr(folder / "pictures.exr", pixels, dict.fromkeys(pixels, "float"))
 
 
 def make_graph(file: Path, node: type[Node], values: dict[str, Any], linked: tuple[str, ...] = ()) -> dict[str, Any]:
-    """A graph of one node whose inputs, but for optional ones that are not named, read layers of a file."""
+    """A graph of one node whose inputs, but for optional ones that are not named, read layers of a file.
+
+    A Number is the average light of one.
+    """
     inputs: dict[str, Any] = {}
     links: dict[str, str] = {}
+    nodes: dict[str, Any] = {"it": {"type": node.id, "values": values}}
     for number, (name, socket) in enumerate(node.inputs.items()):
         if socket.optional and name not in linked:
+            continue
+        if socket.kind is Kind.NUMBER:
+            inputs["measured"] = {"type": "Image", "file": file.name, "layer": "Image2"}
+            nodes["meter"] = {"type": "luminance_statistics"}
+            links |= {"meter.image": "inputs.measured", f"it.{name}": "meter.average"}
             continue
         kind = {Kind.IMAGE: "Image", Kind.FIELD: "Field", Kind.VECTOR: "Vector"}[socket.kind]
         inputs[name] = {"type": kind, "file": file.name, "layer": f"{kind}{number % 3}"}
@@ -87,7 +99,7 @@ def make_graph(file: Path, node: type[Node], values: dict[str, Any], linked: tup
         "settings": {"size": [WIDTH, HEIGHT]},
         "inputs": inputs,
         "outputs": {},
-        "nodes": {"it": {"type": node.id, "values": values}},
+        "nodes": nodes,
         "links": links,
     }
 

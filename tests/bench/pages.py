@@ -2,7 +2,11 @@
 
     .venv/bin/python tests/bench/pages.py out/pages                       # all presets at their own settings
     .venv/bin/python tests/bench/pages.py out/pages --all-settings        # at two others of each control too
+    .venv/bin/python tests/bench/pages.py out/pages --all-settings --driver mesa --part 1/2     # in two processes
     .venv/bin/python tests/bench/pages.py out/pages --table               # what was measured so far
+
+SwiftShader takes twenty times as long as Mesa's driver, which also draws our own pictures: that one tells whether
+controls do what they should, and SwiftShader whether another device agrees.
 
 Each figure is written at once to `figures.jsonl` in the folder, and what is there is not measured again: it may be
 stopped at any time. Pages are kept in the folder. docs/export-web.md has the figures.
@@ -20,29 +24,32 @@ from typing import Any
 
 sys.path.append(str(Path(__file__).parents[1]))
 
-from browser import Browser
+from browser import DRIVERS, Browser
 from halation.cli.program import run
 from halation.presets import paths
 from shown_pages import SIZE, compare, list_settings, place_corners_like, show, take
 
 USUAL = "as it is"
 """The name of the setting that the preset has."""
+WHOLE = "all"
+"""What is noted of a preset as soon as all its settings are measured."""
 LIMIT_CODES, LIMIT_FLIP = 2.01, 0.01
 """Codes of 255 at the 99.9th percentile, and the mean of FLIP, within which a page is right."""
 
 Figure = dict[str, Any]
 
 
-def measure_preset(preset: str, folder: Path, *, all_settings: bool) -> None:
+def measure_preset(preset: str, folder: Path, driver: str, *, all_settings: bool) -> None:
     """Append the figures of a preset that are missing."""
-    done = {figure["setting"] for figure in read_figures(folder) if figure["preset"] == preset}
-    if "refused" in done or (USUAL in done and not all_settings):
+    own = [figure for figure in read_figures(folder) if figure["preset"] == preset]
+    done = {figure["setting"] for figure in own if figure.get("driver", driver) == driver}
+    if {"refused", WHOLE} & done or (USUAL in done and not all_settings):
         return
     page = folder / f"{preset}.html"
     if not page.exists() and run(["export", preset, "-o", str(page), "--size", SIZE]):
         write_figure(folder, {"preset": preset, "setting": "refused"})
         return
-    with Browser() as browser, tempfile.TemporaryDirectory() as work:
+    with Browser(driver=driver) as browser, tempfile.TemporaryDirectory() as work:
         picture = Path(work) / "ours.png"
         show(browser, page)
         for options, knobs in list_settings(browser.run("halation.package.controls")):
@@ -52,10 +59,12 @@ def measure_preset(preset: str, folder: Path, *, all_settings: bool) -> None:
             with place_corners_like(browser):
                 assert run(["render", preset, "-o", str(picture), "--size", SIZE, "--dither", "none", *options]) == 0
             codes, flip = compare(picture, take(browser, Path(work), knobs))
-            figure = {"preset": preset, "setting": setting, "codes": round(codes, 2), "flip": round(flip, 5)}
-            write_figure(folder, {**figure, "messages": browser.messages})
+            figure = {"preset": preset, "driver": driver, "setting": setting}
+            figure |= {"codes": round(codes, 2), "flip": round(flip, 5), "messages": browser.messages}
+            write_figure(folder, figure)
             if not all_settings:
                 return
+    write_figure(folder, {"preset": preset, "driver": driver, "setting": WHOLE})
 
 
 def write_figure(folder: Path, figure: Figure) -> None:
@@ -94,14 +103,17 @@ def main() -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("presets", nargs="*")
     parser.add_argument("--all-settings", action="store_true")
+    parser.add_argument("--driver", choices=tuple(DRIVERS), default="swiftshader")
+    parser.add_argument("--part", default="1/1", help="which of how many parts of the presets")
     parser.add_argument("--table", action="store_true")
     options = parser.parse_args()
     options.folder.mkdir(parents=True, exist_ok=True)
     if options.table:
         print(write_table(read_figures(options.folder)))
         return
-    for preset in options.presets or [path.stem for path in paths()]:
-        measure_preset(preset, options.folder, all_settings=options.all_settings)
+    part, parts = map(int, options.part.split("/"))
+    for preset in options.presets or [path.stem for path in paths()][part - 1 :: parts]:
+        measure_preset(preset, options.folder, options.driver, all_settings=options.all_settings)
 
 
 if __name__ == "__main__":

@@ -46,10 +46,10 @@ STEPS = {"halftone": 0.005, "distance_field": 0.005, "fxaa": 0.01}
 pictures, in which nearly every pixel is an edge, noise of 1e-7 on the tone changes one percent of them in `fxaa`."""
 
 OFTEN = ["agx_look", "crt_television", "glitch_art", "neon_edges", "risograph", "soft_bloom", "watercolor"]
-SELDOM = ["bleach_bypass", "burning_page", "cinematic_grade", "comic_ink", "cyanotype", "film_halation", "fluted_glass",
-          "golden_autumn", "heartbeat", "light_shafts", "mandala", "miniature", "night_street", "oil_painting",
-          "pencil_sketch", "rain_on_glass", "silver_print", "spotlight", "technicolor", "vintage_photo",
-          "zoom_burst"]  # fmt: skip
+SELDOM = ["anamorphic_flares", "auto_exposed", "bleach_bypass", "burning_page", "cinematic_grade", "comic_ink",
+          "cyanotype", "depth_mist", "film_halation", "fluted_glass", "golden_autumn", "heartbeat", "light_shafts",
+          "mandala", "miniature", "night_street", "oil_painting", "pencil_sketch", "rain_on_glass", "silver_print",
+          "spotlight", "technicolor", "vintage_photo", "zoom_burst"]  # fmt: skip
 """Presets that are compared by day and by night; more of them can be exported."""
 
 

@@ -12,6 +12,7 @@ from .noises import (
     lattice_inside,
     lattice_period,
     lattice_place,
+    lattice_places,
     lattice_wrap,
     simplex_noise,
     simplex_slope,
@@ -111,9 +112,7 @@ def noise(
     height: int,
 ) -> tuple[Array, Array, Array]:
     """Noise in layers: the picture, the same as a Field, and two more noises as a vector."""
-    size = np.maximum(size, 1e-3)
-    place = lattice_place(grid(width, height) - np.asarray(offset), size, period, evolution, loop)
-    tiles = np.array([period[0] / size, period[1] / size, loop])
+    place, tiles = lattice_places(size, offset, period, evolution, loop, width, height)
     if fractal == "warped":  # Quilez 2002: a noise moves the places where the noise is read
         bend = noise_layers(kind, fractal, place, tiles, octaves, lacunarity, gain, 1.0, seed)
         place = place + np.concatenate([warp * bend[..., 1:], np.zeros_like(bend[..., :1])], axis=-1)
@@ -136,11 +135,9 @@ def worley(
     height: int,
 ) -> tuple[Array, Array, Array]:
     """Cells (Worley 1996): the distance from the nearest of scattered points, one in every cell of a cubic lattice."""
-    size = np.maximum(size, 1e-3)
-    tiles = np.array([period[0] / size, period[1] / size, loop])
+    place, tiles = lattice_places(size, offset, period, evolution, loop, width, height)
     cells = lattice_period(tiles, 1.0, 1)
-    p = lattice_place(grid(width, height) - np.asarray(offset), size, period, evolution, loop)
-    p = lattice_inside(p * lattice_density(tiles, 1.0, cells), cells)
+    p = lattice_inside(place * lattice_density(tiles, 1.0, cells), cells)
     middle = np.floor(p).astype(np.int64)
     nearest, second, winner = np.full((height, width, 1), 1e9), np.full((height, width, 1), 1e9), middle
     for i in range(27):
@@ -253,9 +250,7 @@ def curl_noise(
 
     The second result is the noise itself, along whose contour lines the flow runs.
     """
-    size = np.maximum(size, 1e-3)
-    place = lattice_place(grid(width, height) - np.asarray(offset), size, period, evolution, loop)
-    tiles = np.array([period[0] / size, period[1] / size, loop])
+    place, tiles = lattice_places(size, offset, period, evolution, loop, width, height)
     flow, stream, part, density, steepest = 0.0, 0.0, 1.0, 1.0, 0.0
     for octave in range(octaves):
         cells = lattice_period(tiles, density, 6)

@@ -39,10 +39,16 @@ def luma_key(
     return image * kept, np.clip(image[..., 3:], 0.0, 1.0) * kept
 
 
-def screen_excess(color: Array, channel: int, limit: str) -> Array:
-    """How much the screen's channel exceeds the limit that the other two channels set (Vlahos 1964)."""
+def screen_channel(screen: Array) -> int:
+    """The channel of a screen of this color: the largest one, green before blue before red."""
+    red, green, blue = np.ravel(screen)[:3]
+    return 1 if green >= max(red, blue) else 2 if blue >= red else 0
+
+
+def screen_excess(color: Array, channel: int, balance: float) -> Array:
+    """How much the screen's channel exceeds a mix of the smaller (balance 0) and larger other one (Vlahos 1964)."""
     first, second = (color[..., other : other + 1] for other in ((channel + 1) % 3, (channel + 2) % 3))
-    most = 0.5 * (first + second) if limit == "average" else np.maximum(first, second)
+    most = mix(np.minimum(first, second), np.maximum(first, second), balance)
     return color[..., channel : channel + 1] - most
 
 
@@ -58,7 +64,7 @@ def chroma_key(
 ) -> tuple[Array, Array]:
     """Cut out a subject before a screen: by color difference (Vlahos 1964) or by chromaticity."""
     color, alpha, back = image[..., :3], image[..., 3:], rgb(screen)[None, None]
-    channel = 1 if back[..., 1] >= max(back[..., 0], back[..., 2]) else 2 if back[..., 2] >= back[..., 0] else 0
+    channel, balance = screen_channel(back), 0.5 if limit == "average" else 1.0
 
     def chromaticity(color: Array) -> Array:
         light = np.maximum(color, 0.0)
@@ -67,12 +73,12 @@ def chroma_key(
     if method == "distance":
         empty = 1.0 - length(chromaticity(color) - chromaticity(back)) / np.maximum(tolerance, 1e-6)
     else:
-        empty = screen_excess(color, channel, limit) / np.maximum(screen_excess(back, channel, limit), 1e-6)
+        empty = screen_excess(color, channel, balance) / np.maximum(screen_excess(back, channel, balance), 1e-6)
     cover = (1.0 - np.clip(empty, 0.0, 1.0) - black) / np.maximum(np.subtract(white, black), 1e-6)
     cover = np.clip(cover, 0.0, 1.0)
     # Subtract the screen, then the light that the screen throws on the subject (spill).
     subject = color - (1.0 - cover) * back
-    excess = spill * np.maximum(screen_excess(subject, channel, limit), 0.0)
+    excess = spill * np.maximum(screen_excess(subject, channel, balance), 0.0)
     subject = subject - excess * np.eye(3)[channel]
     subject = np.where(cover > 0.0, np.maximum(subject, np.minimum(color, 0.0)), 0.0)
     return join(subject, cover * alpha), cover * np.clip(alpha, 0.0, 1.0)

@@ -25,6 +25,21 @@ def luminance_statistics(image: Array, delta: float, alpha_weighted: bool) -> tu
     return numbers[0], numbers[1], numbers[2], numbers[3]
 
 
+def histogram(
+    image: Array, channel: str, low_percentile: float, middle_percentile: float, high_percentile: float
+) -> tuple[Array, Array, Array, Array, Array]:
+    """Three percentiles, the mean and the standard deviation of a channel, as Numbers.
+
+    A percentile is the least value that so many percent of the pixels do not exceed.
+    """
+    at = {"red": 0, "green": 1, "blue": 2, "alpha": 3}
+    light = luminance_of(image) if channel == "luminance" else image[..., at[channel]]
+    shares = (low_percentile, middle_percentile, high_percentile)
+    found = [*np.percentile(light, shares, method="inverted_cdf"), light.mean(), light.std()]
+    numbers = [np.reshape(number, (1, 1, 1)) for number in found]
+    return numbers[0], numbers[1], numbers[2], numbers[3], numbers[4]
+
+
 def histogram_average(light: Array, weight: Array, low: float, high: float) -> float:
     """The geometric mean of the light between two percentiles, from 128 bins of a quarter stop.
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from .hashing import cell_bits, hash3
 from .pixels import Array, mix
+from .places import grid
 
 ENDLESS = 1 << 30  # the period of a lattice that does not repeat
 
@@ -27,6 +28,21 @@ def lattice_place(at: Array, size: float, period: tuple[float, float], evolution
     turn = np.array([*period, loop])
     place = place - np.where(turn > 0.0, turn * np.floor(place / np.maximum(turn, 1e-6)), 0.0)
     return place / (size, size, 1.0)
+
+
+def lattice_places(
+    size: float,
+    offset: tuple[float, float],
+    period: tuple[float, float],
+    evolution: float,
+    loop: float,
+    width: int,
+    height: int,
+) -> tuple[Array, Array]:
+    """Places [height, width, 3] of all pixels in the first layer, and how many of its cells repeat; 0 for none."""
+    size = max(size, 1e-3)
+    place = lattice_place(grid(width, height) - np.asarray(offset), size, period, evolution, loop)
+    return place, np.array([period[0] / size, period[1] / size, loop])
 
 
 def lattice_inside(p: Array, period: Array) -> Array:
