@@ -108,6 +108,7 @@ UNRESTRICTED = {
     "cli/demo.py": "presets",
     "cli/gallery.py": "presets",
     "reference/specimen.py": "a provider that reads no files",
+    "reference/node_page.py": "files of presets of Halation",
     "cli/thumbnail.py": "the picture that it writes where the file manager says",
     "desktop/installation.py": "files of Halation, in the folder of the desktop",
     "color/management.py": "the config of $OCIO, which the user trusts",
