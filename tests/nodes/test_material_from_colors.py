@@ -52,6 +52,40 @@ def test_black_plastic_is_no_metal_and_nothing_is_nothing(run):
     np.testing.assert_allclose(material[0, :, 0], 0.0, atol=1e-4)
 
 
+def find_by_light(run, diffuse: np.ndarray, beauty: np.ndarray, emission: np.ndarray, **values) -> tuple:
+    given = {"diffuse_color": diffuse, "beauty": beauty, "emission": emission}
+    given |= {"roughness": np.full(diffuse.shape[:2], 0.5)}
+    node = MaterialFromColors(metals="beauty", **values)
+    return tuple(run(node, given, output=name) for name in ("albedo", "material"))
+
+
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+"""ITU-R BT.709-6."""
+
+
+def test_black_that_gives_light_is_metal_of_its_hue(run):
+    """Gold, a leaf, a lamp, and a lamp that also mirrors: half of its light."""
+    diffuse = opaque((0.0, 0.0, 0.0), (0.1, 0.35, 0.08), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    gold = np.array([0.5, 0.38, 0.17])
+    beauty = opaque(tuple(gold), (0.3, 0.3, 0.3), (4.0, 2.0, 1.0), (2.0, 2.0, 2.0))
+    emission = opaque((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (4.0, 2.0, 1.0), (1.0, 1.0, 1.0))
+    albedo, material = find_by_light(run, diffuse, beauty, emission, reflectance=0.6, roughen=0.1, polish=0.2)
+    metal = np.array([1.0, 0.0, 0.0, 0.5])
+    expected = [0.6 * gold / (gold @ LUMINANCE), (0.1, 0.35, 0.08), (0.0,) * 3, (0.3,) * 3]
+    np.testing.assert_allclose(albedo[0, :, :3], expected, atol=1e-5)
+    np.testing.assert_allclose(material[0], np.stack([metal, 0.6 - 0.2 * metal], -1), atol=1e-5)
+
+
+def test_a_rim_is_no_metal_because_little_of_it_is_there(run):
+    """Light of a transparent film is premultiplied, and the alpha of the render is that of the surface."""
+    leaf, light, alpha = np.array([0.1, 0.35, 0.08]), np.array([0.2, 0.4, 0.1]), np.array([0.05, 0.3, 1.0])[:, None]
+    diffuse = np.concatenate([leaf * alpha, np.ones((3, 1))], -1)[None]
+    beauty, nothing = np.concatenate([light * alpha, alpha], -1)[None], np.zeros((1, 3, 4))
+    albedo, material = find_by_light(run, diffuse, beauty, nothing)
+    np.testing.assert_allclose(albedo[0], np.concatenate([leaf * alpha, alpha], -1), atol=1e-5)
+    np.testing.assert_allclose(material[0, :, 0], 0.0, atol=1e-5)
+
+
 def test_gold_that_is_lit_again_looks_like_gold(run):
     color, _, diffuse, glossy = CYCLES["gold"]
     albedo, material = find_material(run, opaque(diffuse), opaque(glossy))

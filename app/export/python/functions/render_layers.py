@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from .hashing import pcg3d, unit
-from .pixels import Array, join, largest, length, mix, premultiplied, rgb, straight
+from .pixels import Array, join, largest, length, luminance_of, mix, premultiplied, rgb, straight
 from .places import shifted
 from .tone import with_hue
 
@@ -64,12 +64,11 @@ def id_mask(ids: Array, pick: str, invert: bool) -> tuple[Array, Array]:
     return 1.0 - mask if invert else mask, join(color, np.ones_like(ids))
 
 
-def material_from_colors(diffuse_color: Array, glossy_color: Array, roughness: Array | float) -> tuple[Array, Array]:
+def material_from_glossy(matte: Array, shiny: Array) -> tuple[Array, Array]:
     """The color of surfaces, and how much of them is metal, of their diffuse and glossy colors.
 
     A surface of color b of which x is no metal has the diffuse color b x and the glossy color b (1 - x) + 0.04 x.
     """
-    (matte, alpha), (shiny, _) = straight(diffuse_color), straight(glossy_color)
     total = np.maximum(matte, 0.0) + np.maximum(shiny, 0.0)
     channel = total.argmax(axis=-1)[..., None]
     both = np.take_along_axis(total, channel, axis=-1)
@@ -77,9 +76,42 @@ def material_from_colors(diffuse_color: Array, glossy_color: Array, roughness: A
     root = np.sqrt(np.maximum(both * both - 4.0 * 0.04 * diffuse, 0.0))
     less, more = (both - root) / 0.08, (both + root) / 0.08
     plain = np.where(both > 0.0, np.clip(np.where(more <= 1.0, more, less), 0.0, 1.0), 1.0)
-    rough = np.broadcast_to(np.clip(roughness, 0.0, 1.0), plain.shape)
-    albedo = premultiplied(np.clip(total - 0.04 * plain, 0.0, 1.0), alpha)
-    return albedo, np.concatenate([1.0 - plain, rough], axis=-1)
+    return np.clip(total - 0.04 * plain, 0.0, 1.0), 1.0 - plain
+
+
+def material_from_light(matte: Array, light: Array, emitted: Array, reflectance: float) -> tuple[Array, Array]:
+    """The same where the light of a black surface, but for what it emits, tells that it mirrors, and its hue."""
+    mirrored = np.maximum(light - np.maximum(emitted, 0.0), 0.0)
+    whole, left = luminance_of(np.maximum(light, 0.0)), luminance_of(mirrored)
+    black = 1.0 - np.clip((luminance_of(matte) - 0.02) / 0.08, 0.0, 1.0)
+    metal = black * black * (3.0 - 2.0 * black)
+    metal = metal * np.where(whole > 0.0, np.minimum(left / np.where(whole > 0.0, whole, 1.0), 1.0), 1.0)
+    color = np.where(left > 0.0, reflectance * mirrored / np.where(left > 0.0, left, 1.0), 0.0)
+    return mix(matte, color, metal), metal
+
+
+def material_from_colors(
+    diffuse_color: Array,
+    glossy_color: Array,
+    beauty: Array,
+    emission: Array,
+    roughness: Array | float,
+    metals: str,
+    reflectance: float,
+    roughen: float,
+    polish: float,
+) -> tuple[Array, Array]:
+    """The color of surfaces, and how much of them is metal and how rough they are."""
+    (matte, alpha), (shiny, _) = straight(diffuse_color), straight(glossy_color)
+    if metals == "glossy color":
+        albedo, metal = material_from_glossy(matte, shiny)
+    else:
+        light, _ = straight(beauty)
+        matte, alpha = straight(join(diffuse_color[..., :3], np.clip(beauty[..., 3:], 0.0, 1.0)))
+        emitted, _ = straight(join(emission[..., :3], beauty[..., 3:]))
+        albedo, metal = material_from_light(matte, light, emitted, reflectance)
+    rough = np.clip(roughness + roughen - metal * polish, 0.0, 1.0)
+    return premultiplied(albedo, alpha), np.concatenate([metal, rough], axis=-1)
 
 
 def rebuild_beauty(
