@@ -120,6 +120,14 @@ class Text(Filter):
         float,
         Slider(0.0, 2.0, unit="height", minimum=0.0, maximum=100.0, doc="The longest line; 0 breaks no lines."),
     ] = 0.0
+    fit_width: Annotated[
+        float,
+        Slider(
+            0.0, 1.0, unit="ratio", minimum=0.0, maximum=10.0,
+            doc="The part of the picture's width that the text may take: where it would be wider, all of it is drawn "
+            "smaller. 0 sets no limit.",
+        ),
+    ] = 0.0  # fmt: skip
     direction: Annotated[
         TextDirection, Doc("Where a paragraph starts. Auto follows its first letter; words keep their own way.")
     ] = "auto"
@@ -177,14 +185,17 @@ class Text(Filter):
 
     def _place(self, typeset: TypesetText, size: Size) -> _Placement:
         """Where the block of text is: its left top in pixels, turned around the anchor."""
+        em = self.size
+        if self.fit_width > 0.0 and typeset.width * em > self.fit_width * size[0]:
+            em = self.fit_width * size[0] / typeset.width
         across = {"left": 0.0, "center": 0.5, "right": 1.0}[self.align] * typeset.width
         down = {
             "top": 0.0, "middle": 0.5 * typeset.height, "bottom": typeset.height, "baseline": typeset.ascent,
         }[self.vertical]  # fmt: skip
         cos, sin = math.cos(self.rotation), math.sin(self.rotation)
         x, y = (self.anchor[i] * size[i] for i in (0, 1))
-        across, down = across * self.size, down * self.size
-        return _Placement(self.size, cos, sin, x - cos * across + sin * down, y - sin * across - cos * down)
+        across, down = across * em, down * em
+        return _Placement(em, cos, sin, x - cos * across + sin * down, y - sin * across - cos * down)
 
 
 def _trace_letters(typeset: TypesetText, to: _Placement, size: Size, margin: float) -> Iterator[_Letter]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import freetype
 import numpy as np
 import pytest
 from freetype_letters import draw_letters
@@ -63,6 +64,22 @@ def test_letters_are_exact_at_every_size(run, em):
 def test_proxy_is_as_crisp_as_a_small_picture(run):
     node = Text(text="Proxy", size=0.3)
     np.testing.assert_allclose(matte(run, node, (160, 90), scale=0.5), matte(run, node, (80, 45)), atol=1e-6)
+
+
+@pytest.mark.parametrize(("align", "place"), [("left", 0.1), ("center", 0.5), ("right", 0.9)])
+def test_text_that_is_too_wide_is_drawn_smaller(run, align, place):
+    """As at the size at which FreeType's advances, of letters without kerning, take 0.6 of the width."""
+    size, word = (200, 320), "minimum\nhum"
+    face = freetype.Face(str(DEJAVU))
+    face.set_char_size(face.units_per_EM * 64)
+    flags = freetype.FT_LOAD_NO_HINTING
+    lines = [sum(face.get_advance(face.get_char_index(letter), flags) for letter in line) for line in word.split("\n")]
+    em = 0.6 * size[0] / (max(lines) / 65536.0 / face.units_per_EM)
+    node = Text(text=word, size=0.2, fit_width=0.6, align=align, anchor=(place, 0.5))
+    sized = Text(text=word, size=em / size[1], align=align, anchor=(place, 0.5))
+    np.testing.assert_allclose(matte(run, node, size), matte(run, sized, size), atol=2e-3)
+    short = Text(text="ok", size=0.1, fit_width=0.6)
+    np.testing.assert_array_equal(matte(run, short, size), matte(run, Text(text="ok", size=0.1), size))
 
 
 def test_text_lies_over_the_picture(run):
