@@ -51,8 +51,8 @@ class IsfNames(ShaderNames):
         return f"({name} != 0)" if glsl == "bool" else name
 
     def load(self, ref: Ref, where: str) -> str:
-        where = "ivec2(0)" if self.shape(ref).size == (1, 1) else where
-        return f"@{self.readers[ref]}({where})" + ("", ".r", ".rg", ".rgb", "")[self.shape(ref).channels]
+        where = "ivec2(0)" if self.program.shape(ref).size == (1, 1) else where
+        return f"@{self.readers[ref]}({where})" + ("", ".r", ".rg", ".rgb", "")[self.program.shape(ref).channels]
 
     def constant(self, item: UniformConstant, glsl: str) -> str:
         texts = self.write_constant(item)

@@ -54,6 +54,7 @@ def desk(tmp_path: Path) -> Editor:
         renders=none,
         coloring=none,
         passes=none,
+        strip=none,
         log=log,
     )
 

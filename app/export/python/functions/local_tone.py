@@ -30,13 +30,13 @@ def local_tone_map(
     color, alpha = straight(image)
     weight, light = np.where(alpha > 1e-6, alpha, 0.0), luminance_of(np.maximum(color, 0.0))
     if average is None:
-        average = np.exp((weight * np.log(1e-5 + light)).sum() / weight.sum()) if weight.sum() > 0.0 else 0.0
+        average = float(np.exp((weight * np.log(1e-5 + light)).sum() / weight.sum())) if weight.sum() > 0.0 else 0.0
     if maximum is None:
-        maximum = light[weight > 0.0].max(initial=0.0)
-    average = np.maximum(average, 1e-9)
-    middle = natural_key(average * nits) if auto_key else key
-    white = np.maximum(maximum, 1e-9) * middle / average
-    scaled = weight * np.minimum(light * middle / average, 1e9)
+        maximum = float(light[weight > 0.0].max(initial=0.0))
+    typical = np.maximum(average, 1e-9)
+    middle = natural_key(typical * nits) if auto_key else key
+    white = np.maximum(maximum, 1e-9) * middle / typical
+    scaled = weight * np.minimum(light * middle / typical, 1e9)
 
     def mean_within(sigma: float) -> Array:
         whole = blurred(weight, sigma, "clamp")
@@ -52,6 +52,6 @@ def local_tone_map(
         inner = outer
     bright = np.clip(color, 0.0, 1e9)
     light = np.maximum(luminance_of(bright), 1e-12)
-    keyed = light * middle / average
+    keyed = light * middle / typical
     shown = keyed * (1.0 + keyed / white**2) / (1.0 + area) * np.maximum(bright / light, 1e-12) ** saturation
     return premultiplied(np.clip(shown, 0.0, 1.0) if clip else shown, alpha)
