@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -23,12 +23,39 @@ LINE = 2e-5
 """How far a sample may lie beside the polygon that leaves it out, as a part of the largest number: a hundredth of
 `BEND`, so that leaving out costs nothing against sampling."""
 
+PLACED = 5e-6
+"""How far a number of a matrix may lie beside its curve, as a part of the largest of its row of samples: 0.005 pixels
+of a picture of 1000: devices place corners at 256ths."""
+
+_CUBIC = 4
+"""The samples that a cubic goes through."""
+
+_SMOOTH = 1e-3
+"""How far a sample may lie beside the cubic of its neighbors in a smooth curve: half of `BEND`, which a corner exceeds.
+A cubic between samples is then nearer by far, as the gap is half as wide."""
+
+_LEAST_SCALE = 1e-3
+"""Numbers of a matrix below this part of its largest one do not count by themselves."""
+
+_MOST_BETWEEN = 32
+"""The most places between two samples, whatever the curve is: keeps pages small."""
+
 _ASIDE = 1e-4
 """How far beside the middle of a gap a jump begins and ends, as a part of the gap: more than places are rounded."""
 
 Record = dict[str, Any]
-Jumps = Mapping[str, Array]
-"""By knob, between which samples the whole numbers of a pass jump: a truth value for each gap."""
+
+
+class Jumps(NamedTuple):
+    """Where the numbers of a pass jump: by knob, a truth value for each gap between two samples."""
+
+    whole: Mapping[str, Array] = MappingProxyType({})
+    """Whole numbers jump, and nobody knows exactly where."""
+    lengths: Mapping[str, Array] = MappingProxyType({})
+    """A slot gets more or fewer numbers, in a gap that is nearly a point."""
+
+
+NO_JUMPS = Jumps()
 
 PairSamples = tuple[list[float], list[float], Sequence[Sequence[Sample | None]]]
 """Values of two knobs, and the samples at all combinations of them; None where the passes are others."""
@@ -39,13 +66,13 @@ def write_slot(
     base: Sample,
     samples: Mapping[str, Mapping[float, Sample]],
     checks: list[Any],
-    jumps: Jumps = MappingProxyType({}),
+    jumps: Jumps = NO_JUMPS,
 ) -> Record:
     """A slot as JSON: its numbers at rest, and a curve for each knob that changes them.
 
     `checks` are points with all knobs elsewhere, and their samples: they decide whether curves are added or multiplied.
-    Along a knob with `jumps` the nearest sample counts for whole numbers, with nothing between, and others jump where
-    these do.
+    Where whole numbers jump along a knob, the nearest sample counts for them, with nothing between, and others jump
+    where these do. Where a slot of the pass gets more numbers, all jump: half a weight more means nothing.
     """
     slot = base.slots[number]
     lengths = {len(s.slots[number].numbers) for group in samples.values() for s in group.values()}
@@ -57,10 +84,15 @@ def write_slot(
         rows = np.array([_pad(sample.slots[number].numbers, length) for sample in group.values()])
         largest = max(float(np.abs(rows).max(initial=0.0)), _LEAST_NUMBER)
         if len(places) > 1 and np.abs(rows - rest).max(initial=0.0) > _SAME * largest:
-            is_snapped = name in jumps and (slot.is_whole or len(lengths) > 1)
-            if name in jumps and not is_snapped:
-                places, rows = _split(places, rows, jumps[name])
+            is_snapped = name in jumps.whole and (slot.is_whole or len(lengths) > 1)
+            found = [gaps[name] for gaps in jumps if name in gaps]
+            if found and not is_snapped:
+                places, rows = _split(places, rows, np.any(found, axis=0))
             keep = list(range(len(places))) if is_snapped else simplify(places, rows)
+            if slot.is_matrix and not is_snapped:
+                filled_places, filled_rows = fill_gaps(places, rows)
+                if len(filled_places) > len(places):
+                    places, rows, keep = filled_places, filled_rows, list(range(len(filled_places)))
             curve: Record = {"knob": name, "at": _round(places[keep]), "values": [_round(row) for row in rows[keep]]}
             curves.append({**curve, "snap": True} if is_snapped else curve)
     record: Record = {"base": _round(rest)}
@@ -133,6 +165,50 @@ def _split(places: Array, rows: Array, is_jump: Array) -> tuple[Array, Array]:
     inserted = np.repeat(at + 1, 2)
     places = np.insert(places, inserted, np.stack([middles - aside, middles + aside], axis=1).ravel())
     return places, np.insert(rows, inserted, np.stack([rows[at], rows[at + 1]], axis=1).reshape(-1, rows.shape[1]), 0)
+
+
+def fill_gaps(places: Array, rows: Array) -> tuple[Array, Array]:
+    """Places between samples of a smooth curve, so that a polygon through all of them is as close as `PLACED`.
+
+    They lie on the cubic through the four nearest samples. A gap is left alone where such a cubic misses one of the
+    samples beside it: there is a corner in the curve. So are whole numbers, between which no slider stops.
+    """
+    if len(places) < _CUBIC + 1 or not (places % 1.0).any():
+        return places, rows
+    scale = np.maximum(np.abs(rows).max(axis=0), _LEAST_SCALE * float(np.abs(rows).max()))
+    is_smooth = np.array([_is_smooth(places, rows / scale, at) for at in range(len(places))])
+    all_places, all_rows = [places[:1]], [rows[:1]]
+    for at in range(len(places) - 1):
+        if is_smooth[at] and is_smooth[at + 1]:
+            near = _find_nearest(places, 0.5 * (places[at] + places[at + 1]))
+            middle = _follow_cubic(places[near], rows[near], 0.5 * (places[at : at + 1] + places[at + 1 : at + 2]))
+            aside = float((np.abs(middle[0] - 0.5 * (rows[at] + rows[at + 1])) / scale).max())
+            count = min(int(np.ceil(np.sqrt(aside / PLACED))), _MOST_BETWEEN)
+            between = np.linspace(places[at], places[at + 1], max(count, 1) + 1)[1:-1]
+            all_places.append(between)
+            all_rows.append(_follow_cubic(places[near], rows[near], between))
+        all_places.append(places[at + 1 : at + 2])
+        all_rows.append(rows[at + 1 : at + 2])
+    return np.concatenate(all_places), np.concatenate(all_rows)
+
+
+def _is_smooth(places: Array, rows: Array, at: int) -> bool:
+    """True if a sample is on the cubic through the four nearest others."""
+    others = np.delete(np.arange(len(places)), at)
+    near = others[np.argsort(np.abs(places[others] - places[at]), kind="stable")[:_CUBIC]]
+    return float(np.abs(_follow_cubic(places[near], rows[near], places[at : at + 1])[0] - rows[at]).max()) < _SMOOTH
+
+
+def _find_nearest(places: Array, x: float) -> Array:
+    return np.sort(np.argsort(np.abs(places - x), kind="stable")[:_CUBIC])
+
+
+def _follow_cubic(places: Array, rows: Array, x: Array) -> Array:
+    """The cubic through four rows, at places x (Lagrange)."""
+    weights = np.ones((len(x), _CUBIC))
+    for k, other in itertools.permutations(range(_CUBIC), 2):
+        weights[:, k] *= (x - places[other]) / (places[k] - places[other])
+    return weights @ rows
 
 
 def simplify(places: Array, rows: Array) -> list[int]:

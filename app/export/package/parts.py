@@ -41,22 +41,21 @@ class VariantSamples:
     pairs: Callable[[str, str], PairSamples]
 
     def find_jumps(self, places: list[int]) -> Jumps:
-        """Along which knobs the whole numbers of a pass jump, nobody knows exactly where, and between which samples.
-
-        Where weights become more or fewer, samples are so close that a polygon holds the jump.
-        """
-        jumps: dict[str, Array] = {}
+        """Where the numbers of a pass jump along each knob: these slots are its numbers."""
+        whole, lengths = dict[str, Array](), dict[str, Array]()
         for name, group in self.by_knob.items():
             xs, slots = np.array(list(group)), [[sample.slots[place] for place in places] for sample in group.values()]
             rows = np.array([[x for slot in row if slot.is_whole for x in slot.numbers] for row in slots])
-            lengths = np.array([[len(slot.numbers) for slot in row] for row in slots])
+            counts = np.array([[len(slot.numbers) for slot in row] for row in slots])
+            has_more = np.asarray(np.diff(counts, axis=0).any(axis=1))
+            if has_more.any():
+                lengths[name] = has_more
             if len(xs) > 2:
                 lines = rows[0] + (xs - xs[0])[:, None] / (xs[-1] - xs[0]) * (rows[-1] - rows[0])
                 is_changed = np.asarray(np.diff(rows, axis=0).any(axis=1))
-                is_unknown = is_changed & ~np.diff(lengths, axis=0).any(axis=1)
-                if np.abs(lines - rows).max(initial=0.0) > _ROUNDED and is_unknown.any():
-                    jumps[name] = is_changed
-        return jumps
+                if np.abs(lines - rows).max(initial=0.0) > _ROUNDED and (is_changed & ~has_more).any():
+                    whole[name] = is_changed
+        return Jumps(whole, lengths)
 
     def has_one_length(self, place: int) -> bool:
         """True if a slot has equally many numbers everywhere."""

@@ -24,8 +24,9 @@ SMALLEST_STEP = 1 / 128
 """The smallest step between samples, as a part of the range: two steps of a slider of 256 pixels."""
 
 JUMP_STEP = 1 / 4096
-"""The smallest step where a slot gets more or fewer numbers, such as the weights of a wider blur. Between samples of
-different lengths there is nothing, so they are so close that no slider stops there: a tenth of a pixel of its width."""
+"""The smallest step where passes change, or a slot gets more or fewer numbers, such as the weights of a wider blur.
+Between such samples there is nothing, so they are so close that no slider stops there: a tenth of a pixel of its
+width."""
 
 BEND = 2e-3
 """How far a number may lie beside the line between two samples, as a part of the largest number of its slot: half a
@@ -41,6 +42,9 @@ MOST_JUMPS = 4
 BESIDE = 1e-4
 """How far beside a special value a sample is taken, as a part of the range: less than any slider moves. A choice."""
 
+LEAST_MATRIX = 9
+"""Numbers of the smallest matrix: three rows of three."""
+
 Array = np.ndarray
 LoadFunction = Callable[[Picture], Array]
 
@@ -51,6 +55,8 @@ class Slot(Struct, frozen=True, eq=False):
     numbers: Array
     is_whole: bool
     is_table: bool = False
+    is_matrix: bool = False
+    """A matrix or a camera: an error of its numbers moves things in the picture."""
 
 
 class Sample(Struct, frozen=True, eq=False):
@@ -68,7 +74,7 @@ def take_apart(plan: Plan, load: LoadFunction) -> Sample:
     number_surfaces = {upload.surface for upload in plan.uploads if is_number_table(upload.picture)}
     for render_pass in plan.passes:
         names = tuple((name, _count_numbers(value)) for name, value in render_pass.uniforms)
-        slots += [Slot(_as_array(value), _is_whole(value)) for _, value in render_pass.uniforms]
+        slots += [_make_uniform_slot(value) for _, value in render_pass.uniforms]
         if render_pass.weights:
             weights = np.trim_zeros(np.asarray(render_pass.weights, np.float64), "b")  # the block is filled up with 0
             slots.append(Slot(weights, is_whole=False))
@@ -90,6 +96,10 @@ def take_apart(plan: Plan, load: LoadFunction) -> Sample:
 def is_number_table(picture: Picture) -> bool:
     """True for a table that a node computed of its values, such as a list of lights."""
     return picture.in_memory and picture.path == "numbers"
+
+
+def _make_uniform_slot(value: Uniform) -> Slot:
+    return Slot(_as_array(value), _is_whole(value), is_matrix=_count_numbers(value) >= LEAST_MATRIX)
 
 
 def _as_array(value: Uniform) -> Array:
@@ -177,8 +187,8 @@ class KnobSampler:
 
 
 def _jumps(first: Sample, last: Sample) -> bool:
-    """True if the passes are the same, and a slot of one of them has more numbers in one sample."""
-    return first.structure == last.structure and any(
+    """True if the passes are others, or a slot of one of them has more numbers in one sample."""
+    return first.structure != last.structure or any(
         len(a.numbers) != len(b.numbers) for a, b in zip(first.slots, last.slots, strict=True)
     )
 

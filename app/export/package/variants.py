@@ -9,10 +9,11 @@ from msgspec import Struct
 
 from .sampling import Sample
 
-MAX_SPANS = 16
-"""Spans of one knob. Of the presets, blurs of depth of field have the most pyramids: 14."""
+MAX_SPANS = 40
+"""Spans of one knob; of more, some are left out, and the picture is that of a neighbor. Of the presets, blurs of
+varying width have the most, as their pyramids grow: 33 in a picture of 480x270."""
 
-MAX_VARIANTS = 32
+MAX_VARIANTS = 40
 """Combinations of spans that a package may hold: each has its own list of passes, of about 10 KB."""
 
 
