@@ -289,6 +289,20 @@ def test_matrices_follow_a_turn_closely() -> None:
     assert len(places) < 12 * len(xs)
 
 
+def test_small_numbers_of_a_table_count_beside_huge_ones() -> None:
+    """A table of lights holds how many there are, places, and how far suns are: 1e18."""
+
+    def sample(count: float) -> Sample:
+        slot = Slot(np.array([count, 0.1 * count * count, 1e18]), is_whole=False, is_table=True)
+        return Sample(None, 0, (slot,))  # pyright: ignore[reportArgumentType]
+
+    places = [1.0, 2.0, 3.0, 4.0, 5.0]
+    samples = VariantSamples(sample(3.0), {"lights": {x: sample(x) for x in places}}, [], lambda a, b: ([], [], []))
+    record = write_slot(0, samples.rest, samples.by_knob, [], samples.find_jumps([0]))
+    for x in places:
+        np.testing.assert_allclose(read_slot(record, {"lights": x}), [x, 0.1 * x * x, 1e18], rtol=1e-6)
+
+
 def test_corners_of_curves_stay() -> None:
     """Around a corner nothing is put between samples; there is no bulge in what is straight."""
     xs = np.linspace(0.0, 1.0, 33)
