@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import shutil
 import subprocess
@@ -16,12 +17,13 @@ import pytest
 from exr_files import read
 from halation import document
 from halation.compiler import Plan, Request, compile_graph
+from halation.compiler.knobs import Knob, Point
 from halation.export.package.curves import PLACED, fill_gaps, read_slot, simplify, write_slot
 from halation.export.package.dialects import COVERING_VERTEX, DIALECTS
 from halation.export.package.exact_functions import use_exact_functions
 from halation.export.package.parts import VariantSamples
 from halation.export.package.planning import TARGET
-from halation.export.package.sampling import Sample, Slot
+from halation.export.package.sampling import JUMP_STEP, KnobSampler, Sample, Slot
 from halation.export.package.variants import MAX_SPANS, find_axis
 from halation.inputs.provider import MediaProvider
 from halation.presets import paths
@@ -301,6 +303,22 @@ def test_small_numbers_of_a_table_count_beside_huge_ones() -> None:
     record = write_slot(0, samples.rest, samples.by_knob, [], samples.find_jumps([0]))
     for x in places:
         np.testing.assert_allclose(read_slot(record, {"lights": x}), [x, 0.1 * x * x, 1e18], rtol=1e-6)
+
+
+@pytest.mark.parametrize(("edges", "most"), [(10.3, 200), (1e9, 1000)])
+def test_edges_are_looked_for_closely_unless_they_are_everywhere(edges: float, most: int) -> None:
+    """Passes may change at some values of a knob, or with every value, as those of a picture of another size."""
+    taken: list[float] = []
+
+    def take(point: Point) -> Sample:
+        taken.append(point["size"])
+        return Sample(None, int(edges * point["size"]), (Slot(np.zeros(1), is_whole=False),))  # pyright: ignore[reportArgumentType]
+
+    samples = KnobSampler(take, {"size": 0.5}, Knob("size", 0.5, 0.0, 1.0, is_whole=False)).sample_range()
+    assert len(taken) < most
+    if edges < 100.0:
+        found = [(a + b) / 2.0 for a, b in itertools.pairwise(samples) if int(edges * a) != int(edges * b)]
+        np.testing.assert_allclose(found, np.arange(1, 11) / edges, atol=JUMP_STEP)
 
 
 def test_corners_of_curves_stay() -> None:

@@ -180,6 +180,8 @@ class KnobSampler:
         if sample.structure not in (first.structure, last.structure):
             self._take_beside(middle, is_below=False)
             sample = self.samples[middle]
+            if high - low <= (self.knob.high - self.knob.low) * SMALLEST_STEP:
+                return  # passes that change everywhere, as with a size of pictures, have no edge to look for
         if first.structure == last.structure == sample.structure and _is_straight(first, sample, last):
             return
         self._refine(low, middle)
