@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import errno
 import functools
-import json
 import os
 import sys
 from collections.abc import Callable
@@ -142,6 +141,8 @@ def _close_output() -> None:
 
 def print_json(item: object) -> None:
     """Print a JSON object to standard output."""
+    import json  # most commands print text
+
     print(json.dumps(item, indent=2, ensure_ascii=False, default=str))
 
 

@@ -17,7 +17,6 @@ from typer.main import get_command
 from ..errors import RenderError
 from ..resources.machine import has_memory_limit, memory_limit
 from ..version import VERSION
-from .options import add_root
 from .outcome import EXIT_CODES, catch_faults, flush_output, report_failure
 
 _VISIBLE = (
@@ -188,6 +187,8 @@ def _prints_json(arguments: Sequence[str]) -> bool:
 
 @cache
 def _command(name: str) -> Any:
+    from .options import add_root  # the help needs no options of commands
+
     function = name.replace("-", "_")
     command = getattr(import_module(f".{function}", __package__), function)
     alone = typer.Typer(add_completion=False, rich_markup_mode=None)
