@@ -64,7 +64,11 @@ TYPES = MappingProxyType(
         "`tuple[float, float]`, of 3 or 4 too": (tuple[float, float], (0.0, 0.0), "A vector of as many numbers."),
         "`RGBA`": (vocabulary.RGBA, (0.0, 0.0, 0.0, 1.0), "A scene-linear color, edited with a picker."),
         "`Fraction`": (vocabulary.Fraction, 0.5, "A number from 0 to 1."),
-        "`Position`": (vocabulary.Position, (0.5, 0.5), "A place in the picture, dragged in the viewer."),
+        "`Position`": (
+            vocabulary.Position,
+            (0.5, 0.5),
+            "A place in fractions of the picture, dragged in the viewer. Its pixel is `place * vec2(extent)`.",
+        ),
         "`Kernel3x3`": (vocabulary.Kernel3x3, (0.0,) * 9, "Nine numbers by rows; GLSL fills columns with them."),
         "`Points`": (vocabulary.Points, (), "A curve. `curve_knots` prepares it, `lib/curve.glsl` reads it."),
         "`Stops`": (vocabulary.Stops, (), "A color ramp. `ramp_knots` prepares it, `lib/curve.glsl` reads it."),
