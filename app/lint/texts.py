@@ -78,21 +78,21 @@ def find_text_problems(graph: Graph, text: str, types: Mapping[str, type[Node]])
         return
     if line is None:
         return
-    if _grown(graph):
-        yield from ((problem, 0) for problem in _old(parse(text, ""), types, ""))
+    if _has_versions(graph):
+        yield from ((problem, 0) for problem in _list_outdated(parse(text, ""), types, ""))
     words = "the layout is not the canonical one from here on: halation fmt rewrites it"
     yield Problem("", "", words, NOT_CANONICAL), line
 
 
-def _grown(graph: Graph) -> bool:
+def _has_versions(graph: Graph) -> bool:
     """True if some nodes have a type with several versions."""
     kinds = set(map(type, graph.nodes.values()))
     if any(issubclass(kind, Node) and kind.version > 1 for kind in kinds):
         return True
-    return Group in kinds and any(_grown(item.graph) for item in graph.nodes.values() if isinstance(item, Group))
+    return Group in kinds and any(_has_versions(item.graph) for item in graph.nodes.values() if isinstance(item, Group))
 
 
-def _old(raw: Mapping[str, Any], types: Mapping[str, type[Node]], at: str) -> Iterator[Problem]:
+def _list_outdated(raw: Mapping[str, Any], types: Mapping[str, type[Node]], at: str) -> Iterator[Problem]:
     """Nodes that were saved by an older version of their type, also in groups. `raw` is the text as read before."""
     nodes: Mapping[str, Mapping[str, Any]] = raw.get("nodes", {})
     for id, node in nodes.items():
@@ -103,4 +103,4 @@ def _old(raw: Mapping[str, Any], types: Mapping[str, type[Node]], at: str) -> It
             yield Problem(id, "", words, OLD_VERSION, where)
         body = node.get("graph") if node["type"] == "group" else None
         if isinstance(body, dict):
-            yield from _old(cast("Mapping[str, Any]", body), types, member(where, "graph"))
+            yield from _list_outdated(cast("Mapping[str, Any]", body), types, member(where, "graph"))

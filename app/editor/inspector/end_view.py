@@ -73,7 +73,7 @@ class EndView:
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
-    def _missing(self, rows: Rows, port: Port, end: Input) -> None:
+    def _draw_missing_choice(self, rows: Rows, port: Port, end: Input) -> None:
         key = f"{port} missing"
         rows.name(key, translate("missing", "value"), doc=translate("What to show at a frame that has no file"))
         index = choose(self._fields, key, name_choice(end.missing), name_choices(MISSING), rows.field())
@@ -113,7 +113,7 @@ class EndView:
         if end.kind.is_color:
             self._space(rows, port, end, bool(bound))
         if Pattern.parse(end.file):
-            self._missing(rows, port, end)
+            self._draw_missing_choice(rows, port, end)
         rows.name(
             f"{key} default",
             translate("default", "value"),

@@ -128,7 +128,7 @@ def _tools(context: ViewerContext, asked_view: str, is_data: bool) -> list[_View
             more=lambda: _proxy_while_dragging(context),
         ),
         _action(context, icons.ICON_FA_PLAY if viewer.paused else icons.ICON_FA_PAUSE, "viewer.pause"),
-        *_framing(context),
+        *_list_framing_tools(context),
         *_inspection(context),
     ]
     if not is_data or viewer.meaning == "image":
@@ -136,7 +136,7 @@ def _tools(context: ViewerContext, asked_view: str, is_data: bool) -> list[_View
     return tools
 
 
-def _framing(context: ViewerContext) -> list[_ViewerTool]:
+def _list_framing_tools(context: ViewerContext) -> list[_ViewerTool]:
     """Which part of the picture is shown, and how large."""
     tools = [
         _action(context, icons.ICON_FA_EXPAND, "viewer.fit", apart=True),

@@ -125,13 +125,13 @@ class CallWriter:
         if len(node.outputs) != 1 or feeds.keys() & node.values.keys():
             return None
         shown = {
-            "image" if hides_node(each) else self._scaled(path, each).identity()
+            "image" if hides_node(each) else self._scale_node(path, each).identity()
             for each in self.lowered.nodes_at_frames(path)
         }
         passed = shown.pop() if len(shown) == 1 else None
         return dict.fromkeys(node.outputs, passed) if passed else None
 
-    def _scaled(self, path: str, node: Node) -> Node:
+    def _scale_node(self, path: str, node: Node) -> Node:
         """The node as the compiler asks it whether it changes anything."""
         reference = self.lowered.flat.find_reference_height(path)
         if reference is None and not node.length_units:
