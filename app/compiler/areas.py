@@ -101,34 +101,34 @@ def scale_size(size: Size, scale: float) -> Size:
     return max(1, round(size[0] * scale)), max(1, round(size[1] * scale))
 
 
-def clip_span(span: Span, length: int, edge: Edge, kept: Span | None = None) -> Span:
+def clip_span(span: Span, length: int, edge: Edge, window: Span | None = None) -> Span:
     """The pixels of a row of `length` that an edge mode reads for a span that goes beyond its ends.
 
-    Of a row of which more is `kept`, clamp and black read more. The other modes continue the row itself.
+    Of a row of which `window` holds more, clamp and black read more. The other modes continue the row itself.
     """
     first, end = span
     if edge in ("clamp", "black"):
-        start, stop = kept or (0, length)
+        start, stop = window or (0, length)
         return min(max(first, start), stop - 1), max(min(end, stop), start + 1)
     if first >= 0 and end <= length:
         return span
     low, high = min(max(first, 0), length - 1), max(min(end, length), 1)
     if edge in ("wrap", "panorama") or first < -length or end > 2 * length:
         return 0, length
-    turn = 1 if edge == "mirror" else 0
+    border = 1 if edge == "mirror" else 0
     if first < 0:
-        high = max(high, min(turn - first, length))
+        high = max(high, min(border - first, length))
     if end > length:
-        low = min(low, max(2 * length - turn - end, 0))
+        low = min(low, max(2 * length - border - end, 0))
     return low, high
 
 
-def clip_region(across: Span, down: Span, size: Size, edge: Edge, kept: Region | None = None) -> Region:
-    """The pixels of a picture, of which more may be `kept`, that an edge mode reads for spans beyond its edges."""
+def clip_region(across: Span, down: Span, size: Size, edge: Edge, window: Region | None = None) -> Region:
+    """The pixels that an edge mode reads for spans beyond the edges of a picture, of which `window` may hold more."""
     if edge == "panorama" and (down[0] < 0 or down[1] > size[1]):  # across a pole lies the other half of the row
         return Region.of((0, size[0]), clip_span(down, size[1], "reflect"))
-    kept = kept or Region.whole(size)
-    return Region.of(clip_span(across, size[0], edge, kept.across), clip_span(down, size[1], edge, kept.down))
+    window = window or Region.whole(size)
+    return Region.of(clip_span(across, size[0], edge, window.across), clip_span(down, size[1], edge, window.down))
 
 
 def _find_span(places: list[float], radius: float) -> Span:

@@ -59,7 +59,7 @@ def write_fragment_lines(library: str, channels_written: list[str]) -> Iterator[
     yield "}"
 
 
-def _declare_varyings(way: str) -> str:
+def _declare_varyings(qualifier: str) -> str:
     channels_by_name = {
         "v_place": 3,
         "v_normal": 3,
@@ -71,8 +71,8 @@ def _declare_varyings(way: str) -> str:
         "v_emission": 3,
         "v_metal_rough": 2,
     }
-    lines = [f"{way} {_name_type(count)} {name};" for name, count in channels_by_name.items()]
-    return "\n".join([*lines, f"flat {way} vec2 v_object_material;"])
+    lines = [f"{qualifier} {_name_type(count)} {name};" for name, count in channels_by_name.items()]
+    return "\n".join([*lines, f"flat {qualifier} vec2 v_object_material;"])
 
 
 def _name_type(count: int) -> str:

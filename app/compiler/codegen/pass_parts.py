@@ -66,7 +66,7 @@ class InlinedGather(Struct, frozen=True):
     @property
     def renamed_words(self) -> list[str]:
         """The words of its file that get the prefix."""
-        reads = [f"{item.name}_{way}" for item in self.op.accessors for way in ACCESSORS]
+        reads = [f"{item.name}_{suffix}" for item in self.op.accessors for suffix in ACCESSORS]
         return [word for word in (*self.text.functions, *reads) if word in self.text.words]
 
 
@@ -133,7 +133,7 @@ def _(root: Gather, context: PassContext) -> PassParts:
     names = context.names
     functions = [line for item in root.accessors for line in bodies.write_accessor(names, item, root.edge)]
     arguments = [names.argument(item, {}) for item in root.parameters]
-    accessors = frozenset(f"{item.name}_{way}" for item in root.accessors for way in ACCESSORS)
+    accessors = frozenset(f"{item.name}_{suffix}" for item in root.accessors for suffix in ACCESSORS)
     body, results = list[str](), [f"r{ref.output}" for ref in context.group.writes]
     if root.outputs == 1:
         results = [_write_gather(root, arguments, context.library)]

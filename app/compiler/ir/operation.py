@@ -75,17 +75,17 @@ class Op(Record, frozen=True):
         """True if it may read a picture, of this size, anywhere, whatever region of its own pixels is made."""
         return False
 
-    def footprint(self, ref: Ref, size: Size, region: Region, kept: Region) -> Region:
+    def footprint(self, ref: Ref, size: Size, region: Region, window: Region) -> Region:
         """The region of a picture that it reads to make a `region` of its own pixels.
 
-        `size` is that of the picture's frame, and `kept` all of the picture, which may be larger.
+        `size` is that of the picture's frame, and `window` all of the picture, which may be larger.
         """
         if size == (1, 1) or self.reads_whole(ref, size):
-            return kept
-        return self._find_footprint(ref, size, region, kept)
+            return window
+        return self._find_footprint(ref, size, region, window)
 
-    def _find_footprint(self, ref: Ref, size: Size, region: Region, kept: Region) -> Region:
-        return kept
+    def _find_footprint(self, ref: Ref, size: Size, region: Region, window: Region) -> Region:
+        return window
 
     def find_producer_size(self, ops: Sequence[Op]) -> Size:
         """The size of pictures that its pass can compute, if it takes producers."""

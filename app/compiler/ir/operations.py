@@ -153,8 +153,8 @@ class Call(FunctionOp, frozen=True):
     def reads_whole(self, ref: Ref, size: Size) -> bool:
         return size != self.size
 
-    def _find_footprint(self, ref: Ref, size: Size, region: Region, kept: Region) -> Region:
-        return clip_region(region.across, region.down, size, "clamp", kept)
+    def _find_footprint(self, ref: Ref, size: Size, region: Region, window: Region) -> Region:
+        return clip_region(region.across, region.down, size, "clamp", window)
 
     def is_straight(self, library: Library) -> bool:
         return library.is_straight(self.shader, self.function, self.owner)
@@ -231,16 +231,16 @@ class Gather(FunctionOp, frozen=True, kw_only=True):
     def reads_whole(self, ref: Ref, size: Size) -> bool:
         return any(item.operand == ref and item.around is None for item in self.accessors)
 
-    def _find_footprint(self, ref: Ref, size: Size, region: Region, kept: Region) -> Region:
+    def _find_footprint(self, ref: Ref, size: Size, region: Region, window: Region) -> Region:
         if self.warps and not Region.whole(self.size).contains(region):
-            return kept
+            return window
         footprint: Region | None = None
         for item in self.accessors:
             if item.operand == ref and item.around is not None:
                 across, down = item.around.find_spans(region)
-                part = clip_region(across, down, size, self.edge, kept)
+                part = clip_region(across, down, size, self.edge, window)
                 footprint = footprint.union(part) if footprint else part
-        return footprint or kept
+        return footprint or window
 
     def is_straight(self, library: Library) -> bool:
         return self.light
@@ -292,14 +292,14 @@ class Convolve(Op, frozen=True):
     def reads(self) -> Iterator[Ref]:
         return iter((self.image,))
 
-    def _find_footprint(self, ref: Ref, size: Size, region: Region, kept: Region) -> Region:
+    def _find_footprint(self, ref: Ref, size: Size, region: Region, window: Region) -> Region:
         spans = [region.across, region.down]
         first, end = spans[self.axis]
         spans[self.axis] = (
             first * self.stride + self.origin,
             (end - 1) * self.stride + self.origin + len(self.weights),
         )
-        return clip_region(spans[0], spans[1], size, self.edge, kept)
+        return clip_region(spans[0], spans[1], size, self.edge, window)
 
     def without_numbers(self) -> Convolve:
         return replace(self, weights=(), origin=0)
@@ -323,7 +323,7 @@ class Reduce(Op, frozen=True):
     def find_producer_size(self, ops: Sequence[Op]) -> Size:
         return ops[self.image.op].shapes[self.image.output].size
 
-    def _find_footprint(self, ref: Ref, size: Size, region: Region, kept: Region) -> Region:
+    def _find_footprint(self, ref: Ref, size: Size, region: Region, window: Region) -> Region:
         return Region.of(_find_blocks(region.across, size[0]), _find_blocks(region.down, size[1]))
 
 

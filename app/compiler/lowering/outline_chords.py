@@ -48,14 +48,14 @@ def _cut_squares(
     squares: Array, chord: Array, sizes: Array, extent: tuple[int, int], side: int
 ) -> tuple[Array, Array, Array]:
     """Squares of half the side, each with the chords of the whole one, as far as they lie in the grid."""
-    chords, kept, counts = list[Array](), list[Array](), list[Array]()
+    chords, quarters, counts = list[Array](), list[Array](), list[Array]()
     for corner in ((0, 0), (1, 0), (0, 1), (1, 1)):
         quarter = 2 * squares + corner
         is_inside = (quarter * side < extent).all(axis=1)
-        kept.append(quarter[is_inside])
+        quarters.append(quarter[is_inside])
         counts.append(sizes[is_inside])
         chords.append(chord[np.repeat(is_inside, sizes)])
-    return np.concatenate(kept), np.concatenate(chords), np.concatenate(counts)
+    return np.concatenate(quarters), np.concatenate(chords), np.concatenate(counts)
 
 
 def _keep_near(

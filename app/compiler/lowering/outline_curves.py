@@ -102,9 +102,9 @@ def list_chords(outline: PlacedCurves, feather: float) -> StraightSegments:
     return _divide(outline, np.sqrt(0.75 * outline.bends / slack), 0.0)
 
 
-def _divide(outline: PlacedCurves, wanted: Array, push: float) -> StraightSegments:
+def _divide(outline: PlacedCurves, part_counts: Array, push: float) -> StraightSegments:
     """Curves in as many parts as wanted. n parts are at most 3 / 4 of the bend / n^2 away from their curve."""
-    counts = np.clip(np.ceil(wanted), 1, _MOST).astype(np.intp)
+    counts = np.clip(np.ceil(part_counts), 1, _MOST).astype(np.intp)
     curve, number = spread_counts(counts)
     t = (number / counts[curve])[:, None]
     u = 1.0 - t
@@ -134,10 +134,10 @@ def _bend_across(curves: Array, t: Array) -> Array:
     """The part of the second derivative of curves at t that is across their way."""
     a, b, c, d = (curves[:, at : at + 2] for at in range(0, 8, 2))
     u = 1.0 - t
-    way = u * u * (b - a) + 2.0 * u * t * (c - b) + t * t * (d - c)
-    way = np.where(_measure(way)[:, None] < 1e-9, d - a, way)
+    tangent = u * u * (b - a) + 2.0 * u * t * (c - b) + t * t * (d - c)
+    tangent = np.where(_measure(tangent)[:, None] < 1e-9, d - a, tangent)
     bend = 6.0 * (u * (a - 2.0 * b + c) + t * (b - 2.0 * c + d))
-    return bend - way * ((bend * way).sum(axis=1) / np.maximum((way * way).sum(axis=1), 1e-30))[:, None]
+    return bend - tangent * ((bend * tangent).sum(axis=1) / np.maximum((tangent * tangent).sum(axis=1), 1e-30))[:, None]
 
 
 def spread_counts(counts: Array) -> tuple[Array, Array]:

@@ -113,18 +113,18 @@ def _combine_levels(prepared: Sequence[_SortedOutline], grid: TileGrid) -> tuple
 def _combine(below: Array, cover: Array, fill: OutlineFill) -> Array:
     """A mask with one more outline, as `path_combine` has it."""
     cover = 1.0 - cover if fill.invert else cover
-    amount, kept = cover * fill.opacity, 1.0 - fill.opacity * (1.0 - cover)
+    amount, remaining = cover * fill.opacity, 1.0 - fill.opacity * (1.0 - cover)
     match fill.mode:
         case "union":
             return below + amount * (1.0 - below)
         case "subtract":
             return below * (1.0 - amount)
         case "intersect":
-            return below * kept
+            return below * remaining
         case "max":
             return np.maximum(below, amount)
         case "min":
-            return np.minimum(below, kept)
+            return np.minimum(below, remaining)
         case "difference":
             return np.abs(below - amount)
         case "plus":

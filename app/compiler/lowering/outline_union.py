@@ -43,8 +43,8 @@ def keep_edges(segments: StraightSegments) -> StraightSegments:
     turned = is_turned[pieces.runs]
     ends = np.where(turned[:, None], ends[:, [2, 3, 0, 1]], ends)
     feathers = np.where(turned[:, None], feathers[:, ::-1], feathers)
-    kept = is_edge[pieces.runs]
-    return StraightSegments(ends[kept], feathers[kept])
+    on_edge = is_edge[pieces.runs]
+    return StraightSegments(ends[on_edge], feathers[on_edge])
 
 
 def _find_neighbors(ends: Array) -> tuple[Array, Array]:
@@ -74,10 +74,10 @@ def _find_neighbors(ends: Array) -> tuple[Array, Array]:
 def _find_crossings(ends: Array, first: Array, second: Array) -> tuple[Array, Array, Array, Array]:
     """The pairs that meet, and where along both: parallel ones never do."""
     start, other = ends[first, :2], ends[second, :2]
-    way, across = ends[first, 2:] - start, ends[second, 2:] - other
-    to, area = other - start, _cross(way, across)
+    along, across = ends[first, 2:] - start, ends[second, 2:] - other
+    to, area = other - start, _cross(along, across)
     with np.errstate(divide="ignore", invalid="ignore"):
-        t, u = _cross(to, across) / area, _cross(to, way) / area
+        t, u = _cross(to, across) / area, _cross(to, along) / area
         meets = (t >= -_NEAR) & (t <= 1.0 + _NEAR) & (u >= -_NEAR) & (u <= 1.0 + _NEAR)
     return first[meets], second[meets], t[meets], u[meets]
 
@@ -99,11 +99,11 @@ def _cut(segments: StraightSegments, index: Array, place: Array) -> _Runs:
     follows = np.append(False, (ends[1:, :2] == ends[:-1, 2:]).all(axis=1))
     begins = is_cut | ((place == 0.0) & ~follows[index] & ~is_cut)
     runs = np.cumsum(begins)
-    kept = until > place
-    index, place, until, runs = index[kept], place[kept, None], until[kept, None], runs[kept]
-    start, way = ends[index, :2], ends[index, 2:] - ends[index, :2]
+    has_length = until > place
+    index, place, until, runs = index[has_length], place[has_length, None], until[has_length, None], runs[has_length]
+    start, along = ends[index, :2], ends[index, 2:] - ends[index, :2]
     widths = feathers[index, :1] + (feathers[index, 1:] - feathers[index, :1]) * np.hstack([place, until])
-    cut = np.hstack([np.where(place == 0.0, start, start + place * way), start + until * way])
+    cut = np.hstack([np.where(place == 0.0, start, start + place * along), start + until * along])
     return _Runs(StraightSegments(cut, widths), np.unique(runs, return_inverse=True)[1])
 
 

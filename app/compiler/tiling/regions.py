@@ -53,8 +53,8 @@ def focus_program(
     """
     requested: dict[Ref, Region] = {}
     for ref in program.outputs.values():
-        kept = program.data_window(ref)
-        requested[ref] = clip_region(region.across, region.down, program.shape(ref).size, "clamp", kept)
+        window = program.data_window(ref)
+        requested[ref] = clip_region(region.across, region.down, program.shape(ref).size, "clamp", window)
     requested |= {ref: Region.whole(program.shape(ref).size) for ref in program.memories.values()}
     regions = find_regions(program, passes, requested, cached_refs)
     written = {ref for fused in passes for ref in fused.writes}

@@ -96,9 +96,9 @@ class Bundle:
         for place in np.nonzero(holds == 0.0)[0].tolist():
             shape = self.shapes[place]
             both = make_outside_pieces(shape.keys, self.lanes[place][1], shape.pieces, view.first, view.last)
-            ways = [way for way in both if len(way)]
-            outside_pieces += ways
-            lane_indices += [place] * len(ways)
+            outside = [pieces for pieces in both if len(pieces)]
+            outside_pieces += outside
+            lane_indices += [place] * len(outside)
         screen, bent = project_pieces(np.concatenate([np.empty((0, 4, 2)), *outside_pieces]), plane)
         return lane_indices, screen, bent, np.cumsum([0, *map(len, outside_pieces)]).tolist()
 

@@ -245,11 +245,11 @@ def _repeat_pieces(keys: Keys, inner: Pieces, first: float, last: float) -> tupl
 
     def repeat(turns: range) -> list[Pieces]:
         repeats: list[Pieces] = []
-        for turn in turns:
-            later = np.array((turn * span, 0.0))
+        for repeat_number in turns:
+            later = np.array((repeat_number * span, 0.0))
             if keys.outside == "loop":
                 repeats.append(jump + later)
-            repeats.append((back if keys.outside == "mirror" and turn % 2 else inner) + later)
+            repeats.append((back if keys.outside == "mirror" and repeat_number % 2 else inner) + later)
         return repeats
 
     ahead, behind = repeat(range(1, after + 1)), repeat(range(-before, 0))

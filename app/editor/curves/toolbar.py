@@ -206,13 +206,13 @@ def _draw_ease_button(context: CurvesContext, id: str) -> None:
         context.actions.run(id)
     left, top, right, bottom = context.places[f"button {id}"]
     pad = (right - left) * 0.26
-    way = {
+    curve = {
         "keys.ease_in": lambda t: math.sin(t * math.pi / 2),
         "keys.ease_out": lambda t: 1 - math.cos(t * math.pi / 2),
         "keys.ease": lambda t: (1 - math.cos(t * math.pi)) / 2,
     }[id]
     line: list[imgui.ImVec2Like] = [
-        imgui.ImVec2(left + pad + (right - left - 2 * pad) * t, bottom - pad - (bottom - top - 2 * pad) * way(t))
+        imgui.ImVec2(left + pad + (right - left - 2 * pad) * t, bottom - pad - (bottom - top - 2 * pad) * curve(t))
         for t in (place / 12 for place in range(13))
     ]
     ink = u32(context.palette.text, 1.0 if enabled else 0.4)

@@ -61,8 +61,8 @@ _COUNTS: Mapping[str, tuple[str, str, str]] = MappingProxyType(
 def describe_count(items: ItemSet, noun: str) -> str:
     """The number of items in words: `no lights`, `1 light`, `3 lights`."""
     count = len(items)
-    nothing, one, many = _COUNTS.get(noun, (f"no {noun}s", f"{{count}} {noun}", f"{{count}} {noun}s"))
-    return translate_plural(one, many, count) if count else translate(nothing)
+    nothing, singular, plural = _COUNTS.get(noun, (f"no {noun}s", f"{{count}} {noun}", f"{{count}} {noun}s"))
+    return translate_plural(singular, plural, count) if count else translate(nothing)
 
 
 def describe_strength(fields: Mapping[str, Any]) -> str:

@@ -107,18 +107,18 @@ class RenderQueueView:
 
     # --- one of them -------------------------------------------------------------------------------------------------
 
-    def _draw_row(self, index: int, export: QueuedRender, turn: int) -> None:
+    def _draw_row(self, index: int, export: QueuedRender, position: int) -> None:
         scale, palette = ui_scale(), self._context.palette
         start = imgui.get_cursor_screen_pos()
         self._draw_picture(export, start)
         indent = (_WIDTH + 12) * scale
         imgui.indent(indent)
-        self._draw_head(index, export, turn)
+        self._draw_head(index, export, position)
         if export.state == "running":
             high = imgui.get_text_line_height() + 2 * scale
             imgui.progress_bar(export.fraction, ImVec2(-1, high), progress_text(export))
         else:
-            words = state_text(export, turn)
+            words = state_text(export, position)
             imgui.text_colored(vec4(getattr(palette, _COLORS[export.state])), words[:1].upper() + words[1:])
         record(self._context, f"export {index}")
         with font(self._context, "text", SMALL):
@@ -135,8 +135,8 @@ class RenderQueueView:
         if imgui.get_cursor_screen_pos().y < low:
             imgui.dummy((0, max(low - imgui.get_cursor_screen_pos().y - imgui.get_style().item_spacing.y, 0.0)))
 
-    def _draw_head(self, index: int, export: QueuedRender, turn: int) -> None:
-        buttons = self._buttons(index, export, turn)
+    def _draw_head(self, index: int, export: QueuedRender, position: int) -> None:
+        buttons = self._buttons(index, export, position)
         button_icons, spacing = [button.icon for button in buttons], 2 * ui_scale()
         imgui.align_text_to_frame_padding()
         with font(self._context, "bold"):
@@ -153,7 +153,7 @@ class RenderQueueView:
         imgui.pop_style_var()
         self._draw_compare_menu(index, export)
 
-    def _buttons(self, index: int, export: QueuedRender, turn: int) -> list[_Button]:
+    def _buttons(self, index: int, export: QueuedRender, position: int) -> list[_Button]:
         buttons: list[_Button] = []
         folder = export.folder
         first = (
@@ -173,7 +173,7 @@ class RenderQueueView:
             buttons.append(
                 _Button(icons.ICON_FA_TABLE_COLUMNS, "compare", doc, partial(imgui.open_popup, f"compare {index}"))
             )
-        if export.state == "waiting" and turn > len(self._context.exports.running):
+        if export.state == "waiting" and position > len(self._context.exports.running):
             sooner = partial(self._context.exports.move, export, -1)
             buttons.append(_Button(icons.ICON_FA_ARROW_UP, "earlier", translate("Move up"), sooner))
         if export.state in ("failed", "cancelled"):

@@ -48,10 +48,10 @@ def under_way(export: QueuedRender) -> str:
     return "   ".join(parts) or translate("reading the graph")
 
 
-def state_text(export: QueuedRender, turn: int = 0) -> str:
+def state_text(export: QueuedRender, position: int = 0) -> str:
     """How a render ended, or its position in the queue."""
     if export.state == "waiting":
-        return translate("next") if turn == 0 else translate("{turn} before this one", turn=turn)
+        return translate("next") if position == 0 else translate("{turn} before this one", turn=position)
     many = export.total > 1
     if export.has_many_files:
         count = _count_files(export)

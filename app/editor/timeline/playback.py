@@ -39,8 +39,8 @@ class Course:
             return min(max(self.first + place, self.first), self.last)
         if self.loop == "loop":
             return self.first + place % self.length
-        way = place % (2 * self.length - 2)
-        return self.first + min(way, 2 * self.length - 2 - way)
+        step = place % (2 * self.length - 2)
+        return self.first + min(step, 2 * self.length - 2 - step)
 
     def place(self, frame: int) -> int:
         """The first step that shows a frame; 0 for a frame outside of the course."""

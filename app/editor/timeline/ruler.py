@@ -199,8 +199,8 @@ def _handles(context: TimelineContext, plane: Plane, low: int, high: int) -> Non
     top, size = plane.rect[1], 7.0 * scale
     lit = context.timeline.part is not None
     color = u32(palette.accent if lit else palette.dim, 1.0 if lit else 0.7)
-    for name, x, way in (("in", plane.x(low - 0.5), 1.0), ("out", plane.x(high + 0.5), -1.0)):
-        draw.add_triangle_filled((x, top), (x + way * size, top), (x, top + size * 1.3), color)
+    for name, x, direction in (("in", plane.x(low - 0.5), 1.0), ("out", plane.x(high + 0.5), -1.0)):
+        draw.add_triangle_filled((x, top), (x + direction * size, top), (x, top + size * 1.3), color)
         context.places[f"ruler {name}"] = (x - 3.0 * scale, top, x + 3.0 * scale, top + size)
 
 

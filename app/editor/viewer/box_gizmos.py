@@ -146,8 +146,8 @@ class TransformGizmo:
         x, y = x * self.scale[0], y * self.scale[1]
         lean, fall = (math.tan(math.radians(angle)) for angle in self.skew)
         x, y = x + lean * y, y + fall * x
-        turn = math.radians(self.rotation)
-        x, y = x * math.cos(turn) - y * math.sin(turn), x * math.sin(turn) + y * math.cos(turn)
+        radians = math.radians(self.rotation)
+        x, y = x * math.cos(radians) - y * math.sin(radians), x * math.sin(radians) + y * math.cos(radians)
         center = self._center
         return center[0] + x, center[1] + y
 
@@ -183,8 +183,8 @@ class TransformGizmo:
     def _back(self, to: Point) -> Point:
         """A point of the result before it was moved and turned, from the pivot."""
         x, y = (to[i] - self._center[i] for i in (0, 1))
-        turn = -math.radians(self.rotation)
-        return x * math.cos(turn) - y * math.sin(turn), x * math.sin(turn) + y * math.cos(turn)
+        angle = -math.radians(self.rotation)
+        return x * math.cos(angle) - y * math.sin(angle), x * math.sin(angle) + y * math.cos(angle)
 
     def _move(self, to: Point, snapping: Snapping, is_constrained: bool) -> GizmoDrag:
         start = self._find_move_grip()

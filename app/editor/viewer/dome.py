@@ -37,9 +37,9 @@ def direction_at(sight: Sight, scale: float, camera: CameraModel, at: Point) -> 
 
 def flat(camera: CameraModel, direction: Place) -> Point:
     """A direction on a disk of radius 1: the distance from the center is the angle from the camera."""
-    way = unit(direction)
-    x, y = -dot(camera.right, way), -dot(camera.down, way)
-    out, away = math.hypot(x, y), math.acos(min(max(dot(camera.forward, way), -1.0), 1.0)) / math.pi
+    aim = unit(direction)
+    x, y = -dot(camera.right, aim), -dot(camera.down, aim)
+    out, away = math.hypot(x, y), math.acos(min(max(dot(camera.forward, aim), -1.0), 1.0)) / math.pi
     return (x / out * away, y / out * away) if out > 1e-9 else (away, 0.0)
 
 
@@ -48,7 +48,7 @@ def direction_of(camera: CameraModel, flat: Point) -> Place:
     out = math.hypot(*flat)
     angle = min(out, 1.0) * math.pi
     x, y = (part / out * math.sin(angle) for part in flat) if out > 0.0 else (0.0, 0.0)
-    way = move_place((0.0, 0.0, 0.0), camera.right, -x)
-    way = move_place(move_place(way, camera.down, -y), camera.forward, math.cos(angle))
-    first, second, third = (round(part, 5) for part in unit(way))
+    vector = move_place((0.0, 0.0, 0.0), camera.right, -x)
+    vector = move_place(move_place(vector, camera.down, -y), camera.forward, math.cos(angle))
+    first, second, third = (round(part, 5) for part in unit(vector))
     return first, second, third

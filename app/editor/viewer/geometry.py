@@ -142,8 +142,8 @@ def order_box(box: Box) -> Box:
 
 def wipe_direction(angle: float) -> Point:
     """The direction of the wipe line on the screen, a unit vector: down at 0 degrees, turning clockwise."""
-    turn = math.radians(angle)
-    return -math.sin(turn), math.cos(turn)
+    radians = math.radians(angle)
+    return -math.sin(radians), math.cos(radians)
 
 
 def wipe_grip(at: Point, center: Point, angle: float, arm: float, reach: float) -> Grip:

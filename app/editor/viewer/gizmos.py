@@ -169,8 +169,8 @@ class SizeGizmo:
 
     def drag(self, part: str, to: Point, snapping: Snapping, *, is_constrained: bool = False) -> GizmoDrag:
         """Change the length by how much farther from the center the mouse is; constrained in whole steps of ten."""
-        turn = math.radians(self.direction)
-        far = (to[0] - self.center[0]) * math.cos(turn) + (to[1] - self.center[1]) * math.sin(turn)
+        angle = math.radians(self.direction)
+        far = (to[0] - self.center[0]) * math.cos(angle) + (to[1] - self.center[1]) * math.sin(angle)
         length = (far - self.least) / self.unit * (-1.0 if self.value < 0.0 else 1.0)
         if is_constrained:
             step = 10.0 ** math.floor(math.log10(max(abs(self.value), 1e-3)))
@@ -211,8 +211,8 @@ class TurnGizmo:
 
     def drag(self, part: str, to: Point, snapping: Snapping, *, is_constrained: bool = False) -> GizmoDrag:
         """Turn the arm to the mouse, on the shorter way; constrained to whole steps of 15 degrees."""
-        turn = math.degrees(math.atan2(to[1] - self.center[1], to[0] - self.center[0]))
-        angle = turn if self.is_clockwise else -turn
+        degrees = math.degrees(math.atan2(to[1] - self.center[1], to[0] - self.center[0]))
+        angle = degrees if self.is_clockwise else -degrees
         angle += 360.0 * round((self.value - angle) / 360.0)
         angle = round(angle / 15.0) * 15.0 if is_constrained else snapping.snap_angle(angle)
         while angle > self.high and angle - 360.0 >= self.low:
@@ -234,8 +234,8 @@ def bend_through(start: Point, middle: Point, end: Point) -> tuple[Point, ...]:
 
 def go_from(start: Point, degrees: float, length: float) -> Point:
     """The point at a distance from another one, in a direction clockwise from the right."""
-    turn = math.radians(degrees)
-    return start[0] + length * math.cos(turn), start[1] + length * math.sin(turn)
+    angle = math.radians(degrees)
+    return start[0] + length * math.cos(angle), start[1] + length * math.sin(angle)
 
 
 def hold_axis(start: Point, to: Point) -> Point:

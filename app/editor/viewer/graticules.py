@@ -49,8 +49,8 @@ def chroma_lines(lines: imgui.ImDrawList, palette: Palette, box: Box) -> None:
     radius = width * 0.5 / (2 * scopes.CHROMA)
     for part in (0.5, 1.0):
         lines.add_circle((x, y), radius * part, faint, 64)
-    turn = math.radians(scopes.SKIN_ANGLE)
-    lines.add_line((x, y), (x + radius * math.cos(turn), y - radius * math.sin(turn)), u32(palette.warning, 0.55))
+    angle = math.radians(scopes.SKIN_ANGLE)
+    lines.add_line((x, y), (x + radius * math.cos(angle), y - radius * math.sin(angle)), u32(palette.warning, 0.55))
     size = max(width * 0.02, 3.0)
     for name, color in scopes.TARGETS:
         across, down = scopes.chroma_place(color)

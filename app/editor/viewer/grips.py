@@ -46,6 +46,6 @@ def draw_grip(lines: imgui.ImDrawList, at: Point, shape: GripShape, *, is_lit: b
         lines.add_circle_filled(at, radius, u32(color))
 
 
-def _find_corners(at: Point, radius: float, turn: float) -> list[imgui.ImVec2Like]:
-    angles = (turn + index * math.pi / 2.0 for index in range(4))
+def _find_corners(at: Point, radius: float, first_angle: float) -> list[imgui.ImVec2Like]:
+    angles = (first_angle + index * math.pi / 2.0 for index in range(4))
     return [imgui.ImVec2(at[0] + radius * math.cos(angle), at[1] + radius * math.sin(angle)) for angle in angles]

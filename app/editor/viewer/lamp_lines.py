@@ -141,8 +141,8 @@ def _project_places(sight: Sight, lamp: Lamp, places: list[Place]) -> list[Point
 
 def _ball(lines: imgui.ImDrawList, middle: Point, radius: float, sun: Lamp) -> None:
     """Rings that shrink towards where the light comes from: brighter, the more of it comes from the camera's side."""
-    way, color = unit(sun.light.direction), swatch(sun.light.color) if sun.light.on else BLACK
-    x, y, ahead = -dot(sun.camera.right, way), -dot(sun.camera.down, way), dot(sun.camera.forward, way)
+    aim, color = unit(sun.light.direction), swatch(sun.light.color) if sun.light.on else BLACK
+    x, y, ahead = -dot(sun.camera.right, aim), -dot(sun.camera.down, aim), dot(sun.camera.forward, aim)
     for ring in range(_RINGS):
         part = ring / (_RINGS - 1)
         light = min(max((part + ahead) / (1.0 + abs(ahead)), 0.0), 1.0)

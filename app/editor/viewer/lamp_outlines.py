@@ -27,8 +27,8 @@ def outline(light: Light) -> list[list[Place]]:
     """The edges of a rectangle, a disc or a tube in the world, as closed paths."""
     along, across = half_axes_of(light)
     corners = ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0))
-    turns = [2.0 * math.pi * step / _STEPS for step in range(_STEPS)]
-    round_points = [(math.cos(turn), math.sin(turn)) for turn in turns]
+    angles = [2.0 * math.pi * step / _STEPS for step in range(_STEPS)]
+    round_points = [(math.cos(angle), math.sin(angle)) for angle in angles]
     if light.kind is LightKind.RECTANGLE:
         return [[_add_axes(light.place, along, across, corner) for corner in corners]]
     if light.kind is LightKind.DISC:
@@ -50,13 +50,13 @@ def cone(lamp: Lamp, angle: float) -> list[Place]:
     goal = lamp.goal
     if goal is None:
         return []
-    way, length = unit(lamp.light.direction), math.dist(goal, lamp.light.place)
+    axis, length = unit(lamp.light.direction), math.dist(goal, lamp.light.place)
     radius = length * math.tan(math.radians(min(angle, WIDEST_CONE)))
-    side = _across(way, (0.0, 0.0, 1.0) if abs(way[2]) < 0.9 else (1.0, 0.0, 0.0))
-    perpendicular = _cross(way, side)
+    side = _across(axis, (0.0, 0.0, 1.0) if abs(axis[2]) < 0.9 else (1.0, 0.0, 0.0))
+    perpendicular = _cross(axis, side)
     return [
-        move_place(move_place(goal, side, radius * math.cos(turn)), perpendicular, radius * math.sin(turn))
-        for turn in (2.0 * math.pi * step / _STEPS for step in range(_STEPS))
+        move_place(move_place(goal, side, radius * math.cos(step_angle)), perpendicular, radius * math.sin(step_angle))
+        for step_angle in (2.0 * math.pi * step / _STEPS for step in range(_STEPS))
     ]
 
 
@@ -74,8 +74,8 @@ def _side(start: Point, end: Point, of: Point) -> float:
     return (end[0] - start[0]) * (of[1] - start[1]) - (end[1] - start[1]) * (of[0] - start[0])
 
 
-def _across(way: Place, near: Place) -> Place:
-    return unit(_cross(way, near))
+def _across(axis: Place, near: Place) -> Place:
+    return unit(_cross(axis, near))
 
 
 def _cross(a: Place, b: Place) -> Place:

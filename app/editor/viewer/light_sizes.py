@@ -38,8 +38,8 @@ class SizeHandle:
     def measure(self, at: Point) -> float:
         """The length for which the handle would be at a point of the screen, across from its own line."""
         line = self.end[0] - self.center[0], self.end[1] - self.center[1]
-        way = at[0] - self.center[0], at[1] - self.center[1]
-        share = (line[0] * way[0] + line[1] * way[1]) / max(line[0] ** 2 + line[1] ** 2, 1e-9)
+        offset = at[0] - self.center[0], at[1] - self.center[1]
+        share = (line[0] * offset[0] + line[1] * offset[1]) / max(line[0] ** 2 + line[1] ** 2, 1e-9)
         return max(share * self.length, LEAST)
 
 
@@ -100,9 +100,9 @@ def _list_cone_ends(sight: Sight, lamp: Lamp) -> Iterator[tuple[str, Point, Poin
 def _step_inward(sight: Sight, at: Point, length: float) -> Point:
     """A point toward the middle of the picture, where the end of a large circle is likely to be seen."""
     middle = sight.place((0.5, 0.5))
-    way = middle[0] - at[0], middle[1] - at[1]
-    far = math.hypot(*way)
-    x, y = (way[0] / far, way[1] / far) if far > 0.0 else (1.0, 0.0)
+    offset = middle[0] - at[0], middle[1] - at[1]
+    far = math.hypot(*offset)
+    x, y = (offset[0] / far, offset[1] / far) if far > 0.0 else (1.0, 0.0)
     return at[0] + length * x, at[1] + length * y
 
 

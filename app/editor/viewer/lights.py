@@ -216,7 +216,7 @@ def _over(context: ViewerContext, camera: CameraModel, to: Point, light: Light) 
     place, depth = surface
     back = move_place(camera.eye, place, -1.0)
     gap = _OVER * depth + (light.size if light.kind is LightKind.SPHERE else 0.0)
-    way = unit(back)
-    far = min(gap / max(-dot(way, camera.forward), 1e-3), 0.9 * math.hypot(*back))
-    x, y, z = (round(part, 5) for part in move_place(place, way, far))
+    direction = unit(back)
+    far = min(gap / max(-dot(direction, camera.forward), 1e-3), 0.9 * math.hypot(*back))
+    x, y, z = (round(part, 5) for part in move_place(place, direction, far))
     return x, y, z

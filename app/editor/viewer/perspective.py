@@ -30,9 +30,9 @@ def unproject(camera: CameraModel, u: float, v: float, depth: float) -> Place:
     return x, y, z
 
 
-def move_place(place: Place, way: Place, far: float) -> Place:
+def move_place(place: Place, direction: Place, far: float) -> Place:
     """A position, moved along a vector by a factor."""
-    x, y, z = (at + far * part for at, part in zip(place, way, strict=True))
+    x, y, z = (at + far * part for at, part in zip(place, direction, strict=True))
     return x, y, z
 
 
@@ -41,10 +41,10 @@ def dot(first: Place, second: Place) -> float:
     return sum(a * b for a, b in zip(first, second, strict=True))
 
 
-def unit(way: Place, otherwise: Place = (0.0, 0.0, -1.0)) -> Place:
+def unit(vector: Place, otherwise: Place = (0.0, 0.0, -1.0)) -> Place:
     """The vector, normalized."""
-    length = math.hypot(*way)
-    return move_place((0.0, 0.0, 0.0), way, 1.0 / length) if length > 0.0 and math.isfinite(length) else otherwise
+    length = math.hypot(*vector)
+    return move_place((0.0, 0.0, 0.0), vector, 1.0 / length) if length > 0.0 and math.isfinite(length) else otherwise
 
 
 def neat(number: float) -> float:

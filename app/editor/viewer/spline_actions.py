@@ -44,7 +44,7 @@ def _list_nudges() -> tuple[Action[ViewerContext], ...]:
         Action(
             f"viewer.nudge_{name}{suffix}",
             label,
-            partial(nudge_points, by=(way[0] * pixels, way[1] * pixels)),
+            partial(nudge_points, by=(step[0] * pixels, step[1] * pixels)),
             "",
             f"{keys}+{key}",
             "viewer",
@@ -56,7 +56,7 @@ def _list_nudges() -> tuple[Action[ViewerContext], ...]:
             ("Alt", "", 1.0, mark("Move the selected points of the selected shape by a pixel.")),
             ("Shift+Alt", "_far", _FAR, mark("Move the selected points of the selected shape by ten pixels.")),
         )
-        for name, label, key, way in _NUDGES
+        for name, label, key, step in _NUDGES
     )
 
 

@@ -85,9 +85,9 @@ def write_slot(
         largest = np.abs(rows).max(axis=0 if slot.is_table else None, initial=_LEAST_NUMBER)  # tables mix all units
         if len(places) > 1 and (np.abs(rows - rest) / largest).max(initial=0.0) > _SAME:
             is_snapped = name in jumps.whole and (slot.is_whole or len(lengths) > 1)
-            found = [gaps[name] for gaps in jumps if name in gaps]
-            if found and not is_snapped:
-                places, rows = _split(places, rows, np.any(found, axis=0))
+            knob_gaps = [gaps[name] for gaps in jumps if name in gaps]
+            if knob_gaps and not is_snapped:
+                places, rows = _split(places, rows, np.any(knob_gaps, axis=0))
             keep = list(range(len(places))) if is_snapped else simplify(places, rows / largest)
             if slot.is_matrix and not is_snapped:
                 filled_places, filled_rows = fill_gaps(places, rows)

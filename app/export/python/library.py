@@ -39,8 +39,8 @@ class FunctionLibrary(Struct, frozen=True):
 
     def find_function(self, name: str) -> Definition | None:
         """The function of a node; None if there is none."""
-        found = self.definitions.get(name)
-        return found if found and found.is_function else None
+        definition = self.definitions.get(name)
+        return definition if definition and definition.is_function else None
 
     def collect(self, names: Iterable[str]) -> list[Definition]:
         """The definitions of these names and all that they use, each after those that it uses."""
@@ -90,9 +90,9 @@ def _find_aliases(tree: ast.Module) -> Iterator[tuple[str, tuple[object, ...]]]:
         if (
             isinstance(node, ast.Assign)
             and isinstance(node.targets[0], ast.Name)
-            and (found := _read_choices(node.value))
+            and (choices := _read_choices(node.value))
         ):
-            yield node.targets[0].id, found
+            yield node.targets[0].id, choices
 
 
 def _read_choices(node: ast.AST | None) -> tuple[object, ...]:

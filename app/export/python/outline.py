@@ -146,9 +146,9 @@ class NameTable:
         self._taken = {*library.definitions, *library.imports, *keyword.kwlist, *vars(builtins)}
         self._taken |= {"frame", "np", "width", "height", "main", "make_picture"}
 
-    def choose(self, wanted: str) -> str:
+    def choose(self, name_hint: str) -> str:
         """A free name that is like this one."""
-        base = re.sub(r"\W+", "_", wanted, flags=re.ASCII).strip("_").lower() or "picture"
+        base = re.sub(r"\W+", "_", name_hint, flags=re.ASCII).strip("_").lower() or "picture"
         base = f"n{base}" if base[0].isdigit() else base
         name, number = base if base not in self._taken else f"{base}_out", 2
         while name in self._taken:

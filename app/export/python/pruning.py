@@ -140,13 +140,13 @@ class _Pruner:
             for block in (getattr(node, "body", None), getattr(node, "orelse", None)):
                 if isinstance(block, list):
                     self._prune_block(block)
-        kept: list[str] = []
+        lines: list[str] = []
         for number, line in enumerate(self.lines, start=1):
             if number not in self.dropped:
                 line = self.reworded.get(number, line)
                 away = self.moved.get(number, 0)
-                kept.append(line[away:] if line[:away].isspace() else line)
-        text = "\n".join(kept)
+                lines.append(line[away:] if line[:away].isspace() else line)
+        text = "\n".join(lines)
         uses = find_uses(ast.parse(text).body[0])
         return replace(self.definition, text=text, uses=uses)
 
@@ -156,15 +156,15 @@ class _Pruner:
         names = [name for name, options in self.known.options.items() if keys and keys <= options]
         if not names:
             return
-        wanted = self.passed.union(*(self.known.choices[name] for name in names))
+        texts = self.passed.union(*(self.known.choices[name] for name in names))
         spans = [
             (key.lineno, value.end_lineno or 0) for key, value in zip(table.keys, table.values, strict=True) if key
         ]
         apart = all(before[1] < after[0] for before, after in zip([(0, table.lineno), *spans], spans, strict=False))
-        if not apart or not keys & wanted or (table.end_lineno or 0) <= spans[-1][1]:
+        if not apart or not keys & texts or (table.end_lineno or 0) <= spans[-1][1]:
             return
         for key, span in zip(table.keys, spans, strict=True):
-            if isinstance(key, ast.Constant) and key.value not in wanted:
+            if isinstance(key, ast.Constant) and key.value not in texts:
                 self.dropped |= set(range(span[0], span[1] + 1))
 
     def _prune_block(self, block: list[ast.stmt]) -> None:
@@ -178,8 +178,8 @@ class _Pruner:
                 if at + 1 < len(block):
                     self.dropped |= set(range(block[at + 1].lineno, (block[-1].end_lineno or 0) + 1))
                 return
-            if isinstance(node.body[-1], ast.Return) and (found := self._read_test(node.test)) and found[2]:
-                answered.setdefault(found[0], set()).update(found[1])
+            if isinstance(node.body[-1], ast.Return) and (comparison := self._read_test(node.test)) and comparison[2]:
+                answered.setdefault(comparison[0], set()).update(comparison[1])
 
     def _prune_chain(self, node: ast.If, answered: dict[str, set[str]]) -> list[ast.stmt]:
         """Prune a test with its `elif` and `else`. Returns the body that always runs, if nothing is left to test."""
@@ -192,9 +192,9 @@ class _Pruner:
             if decided is None:
                 tested.append(at)
             last = at if decided else None
-            found = self._read_test(at.test)
-            if found and found[2]:
-                answered.setdefault(found[0], set()).update(found[1])
+            comparison = self._read_test(at.test)
+            if comparison and comparison[2]:
+                answered.setdefault(comparison[0], set()).update(comparison[1])
             end, after = at, at.orelse[0] if at.orelse else None
             at = after if isinstance(after, ast.If) and self._is_elif(after) else None
         spans = [self._find_span(each) for each in tested]
@@ -203,17 +203,17 @@ class _Pruner:
         if last is None and end.orelse and not (tested and self._has_nothing_left(end.test, answered)):
             body, header = end.orelse, self._find_else(end)
             first = header + 1
-        kept = {number for span in spans for number in span}
+        kept_lines = {number for span in spans for number in span}
         if body:
-            kept |= set(range(first, (body[-1].end_lineno or 0) + 1))
+            kept_lines |= set(range(first, (body[-1].end_lineno or 0) + 1))
             if tested:
-                kept.add(header)
+                kept_lines.add(header)
                 indent = " " * node.col_offset
                 self.reworded[header] = f"{indent}else:" if last else self.lines[header - 1]
             else:
                 for number in range(first, (body[-1].end_lineno or 0) + 1):
                     self.moved[number] = self.moved.get(number, 0) + 4
-        self.dropped |= set(range(node.lineno, (node.end_lineno or 0) + 1)) - kept
+        self.dropped |= set(range(node.lineno, (node.end_lineno or 0) + 1)) - kept_lines
         if tested:
             line = self.lines[tested[0].lineno - 1]
             self.reworded[tested[0].lineno] = line.replace("elif ", "if ", 1) if self._is_elif(tested[0]) else line
@@ -229,9 +229,9 @@ class _Pruner:
         return next(number for number in between if self.lines[number - 1].lstrip().startswith("else:"))
 
     def _has_nothing_left(self, test: ast.expr, answered: Mapping[str, set[str]]) -> bool:
-        found = self._read_test(test)
-        possible = self._list_possible(found[0]) if found else None
-        return found is not None and possible is not None and not possible - answered.get(found[0], set())
+        comparison = self._read_test(test)
+        possible = self._list_possible(comparison[0]) if comparison else None
+        return comparison is not None and possible is not None and not possible - answered.get(comparison[0], set())
 
     def _is_elif(self, node: ast.If) -> bool:
         return self.lines[node.lineno - 1].lstrip().startswith("elif ")
@@ -244,12 +244,12 @@ class _Pruner:
         if isinstance(test, ast.Name):
             values = self.known.switches.get(test.id, set()) | self.defaults.get(test.id, set())
             return next(iter(values)) if len(values) == 1 and test.id in self.known.switches else None
-        found = self._read_test(test)
-        possible = self._list_possible(found[0]) if found else None
-        if found is None or possible is None:
+        comparison = self._read_test(test)
+        possible = self._list_possible(comparison[0]) if comparison else None
+        if comparison is None or possible is None:
             return None
-        name, wanted, is_positive = found
-        holds = {choice in wanted for choice in possible - answered.get(name, set())}
+        name, texts, is_positive = comparison
+        holds = {choice in texts for choice in possible - answered.get(name, set())}
         if len(holds) > 1:
             return None
         return (holds.pop() if holds else False) == is_positive
@@ -264,10 +264,10 @@ class _Pruner:
         """The name that is compared, the texts that it is compared with, and whether it should be one of them."""
         if not isinstance(test, ast.Compare) or not isinstance(test.left, ast.Name) or len(test.ops) != 1:
             return None
-        wanted = self._list_wanted(test.comparators[0])
-        if wanted is None or not isinstance(test.ops[0], ast.Eq | ast.NotEq | ast.In | ast.NotIn):
+        texts = self._list_wanted(test.comparators[0])
+        if texts is None or not isinstance(test.ops[0], ast.Eq | ast.NotEq | ast.In | ast.NotIn):
             return None
-        return test.left.id, wanted, isinstance(test.ops[0], ast.Eq | ast.In)
+        return test.left.id, texts, isinstance(test.ops[0], ast.Eq | ast.In)
 
     def _list_wanted(self, node: ast.expr) -> frozenset[str] | None:
         """The texts that a test compares with."""

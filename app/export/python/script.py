@@ -99,7 +99,7 @@ def _write_imports(lines: Iterable[str]) -> str:
             names.setdefault(module, []).append(name)
         else:
             plain.append(line)
-    plain += [f"from {module} import {', '.join(sorted(found))}" for module, found in names.items()]
+    plain += [f"from {module} import {', '.join(sorted(module_names))}" for module, module_names in names.items()]
     own = sorted((line for line in plain if not _is_science(line)), key=_sort_key)
     science = sorted((line for line in plain if _is_science(line)), key=_sort_key)
     return "from __future__ import annotations\n\n" + "\n".join(own) + "\n\n" + "\n".join(science)
@@ -182,7 +182,7 @@ def _write_main(outline: ScriptOutline) -> str:
     """The command line of the script."""
     arguments = (["**inputs"] if outline.inputs else []) + (["frame=words.frame"] if outline.uses_frame else [])
     text = read_shipped_text("script_main.py.txt").replace("#arguments#", ", ".join(arguments))
-    for mark, wanted in (("#inputs#", bool(outline.inputs)), ("#frame#", outline.uses_frame)):
+    for mark, is_used in (("#inputs#", bool(outline.inputs)), ("#frame#", outline.uses_frame)):
         lines = text.splitlines()
-        text = "\n".join(line.removeprefix(mark) for line in lines if wanted or not line.startswith(mark))
+        text = "\n".join(line.removeprefix(mark) for line in lines if is_used or not line.startswith(mark))
     return text

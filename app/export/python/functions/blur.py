@@ -174,9 +174,9 @@ def variable_blur(image: Array, sigma: float, edge: Edge, field: Array | None = 
     last = max(ceil(np.log(full / 0.16) / np.log(step)), 0)
     variances = [full / step**rung for rung in range(last + 1)]
     sigmas = [sigma, *(brentq(lambda s, v=v: float(variance_of(s)) - v, 0.1, sigma) for v in variances[1:])]
-    wanted = variance_of(field * sigma)
-    rung = np.clip(np.log2(full / np.maximum(wanted, 1e-9)) / np.log2(step), 0.0, last)
-    rung = np.where(wanted < variances[-1], last + 1.0 - wanted / variances[-1], rung)
+    variance = variance_of(field * sigma)
+    rung = np.clip(np.log2(full / np.maximum(variance, 1e-9)) / np.log2(step), 0.0, last)
+    rung = np.where(variance < variances[-1], last + 1.0 - variance / variances[-1], rung)
     rung = np.where(field <= 0.0, last + 1.0, np.where(field >= 1.0, 0.0, rung))
     above = np.minimum(np.floor(rung), last)
     t = rung - above

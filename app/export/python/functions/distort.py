@@ -13,9 +13,9 @@ from .pixels import Array, length
 from .places import Edge, bilinear, fold, grid, kernel_radius, kernel_weight, pixels_at, warp, warp_by_counts
 
 
-def turned_by(away: Array, turn: Array | float) -> Array:
+def turned_by(away: Array, angle: Array | float) -> Array:
     """Vectors [..., 2] rotated, x toward y."""
-    x, y, cos, sin = away[..., :1], away[..., 1:], np.cos(turn), np.sin(turn)
+    x, y, cos, sin = away[..., :1], away[..., 1:], np.cos(angle), np.sin(angle)
     return np.concatenate([cos * x - sin * y, sin * x + cos * y], axis=-1)
 
 
@@ -31,8 +31,8 @@ def backward_matrix(
     wide, high = (copysign(max(abs(part), 1e-3), part) for part in scale)
     cos, sin = np.cos(rotation), np.sin(rotation)
     lean, fall = np.tan(skew[0]), np.tan(skew[1])
-    turn = np.array([[cos, -sin], [sin, cos]])
-    forward = turn @ np.array([[1.0, lean], [fall, 1.0]]) @ np.diag([wide, high])
+    rotated = np.array([[cos, -sin], [sin, cos]])
+    forward = rotated @ np.array([[1.0, lean], [fall, 1.0]]) @ np.diag([wide, high])
     if direction == "inverse":
         forward_start, matrix = np.add(pivot, position), forward
         start = np.asarray(pivot)
@@ -98,8 +98,8 @@ def crop(
     at = grid(image.shape[1], image.shape[0])
     within = np.minimum(at - (left, top), (right, bottom) - at)
     faded = np.clip(within / max(softness, 1e-6), 0.0, 1.0).prod(axis=-1, keepdims=True) if softness > 0.0 else 1.0
-    kept = np.where(within.min(axis=-1, keepdims=True) > 0.0, image * faded, 0.0)
-    return kept[top:bottom, left:right] if resize else kept
+    cropped = np.where(within.min(axis=-1, keepdims=True) > 0.0, image * faded, 0.0)
+    return cropped[top:bottom, left:right] if resize else cropped
 
 
 def resize(image: Array, scale: tuple[float, float], kernel: str, edge: Edge) -> Array:
@@ -202,13 +202,15 @@ def polar(
     height, width = image.shape[:2]
     middle = np.asarray(center) * (width, height)
     if direction == "unwrap":
-        turn, ring = 2.0 * np.pi / width, radius / height
+        pixel_angle, ring = 2.0 * np.pi / width, radius / height
 
         def unwrapped(at: Array) -> Array:
-            angle = at[..., :1] * turn + rotation
+            angle = at[..., :1] * pixel_angle + rotation
             return middle + at[..., 1:] * ring * np.concatenate([np.cos(angle), np.sin(angle)], axis=-1)
 
-        return warp_by_counts(image, unwrapped, edge, np.maximum(turn * grid(width, height)[..., 1:] * ring, ring))
+        return warp_by_counts(
+            image, unwrapped, edge, np.maximum(pixel_angle * grid(width, height)[..., 1:] * ring, ring)
+        )
 
     def place_of(at: Array) -> Array:
         away = at - middle

@@ -81,13 +81,13 @@ def along_lines(blurs: Array, tensor: Array, across: Array, stroke: float, edge:
     total, whole = blurs, 1.0
     for side in (-1.0, 1.0):
         at = grid(width, height)
-        way = side * np.stack([-across[..., 1], across[..., 0]], axis=-1)
+        direction = side * np.stack([-across[..., 1], across[..., 0]], axis=-1)
         for i in range(1, int(reach / apart + 0.5) + 1):
-            here = most_change(bilinear(tensor, at + 0.5 * apart * way, edge))
+            here = most_change(bilinear(tensor, at + 0.5 * apart * direction, edge))
             along = np.stack([-here[..., 1], here[..., 0]], axis=-1)
-            turned = np.where((along * way).sum(axis=-1, keepdims=True) < 0.0, -along, along)
-            way = np.where(length(here) > 0.0, turned, way)
-            at = at + apart * way
+            turned = np.where((along * direction).sum(axis=-1, keepdims=True) < 0.0, -along, along)
+            direction = np.where(length(here) > 0.0, turned, direction)
+            at = at + apart * direction
             weight = np.exp(-0.5 * (i * apart / stroke) ** 2)
             total, whole = total + weight * bilinear(blurs, at, edge), whole + weight
     return total / whole
@@ -96,9 +96,9 @@ def along_lines(blurs: Array, tensor: Array, across: Array, stroke: float, edge:
 def most_change(tensor: Array) -> Array:
     """The direction of most change of a structure tensor; 0 where all directions are alike."""
     xx, xy, yy = tensor[..., 0:1], tensor[..., 1:2], tensor[..., 2:3]
-    turn = 0.5 * np.arctan2(2.0 * xy, xx - yy)
+    angle = 0.5 * np.arctan2(2.0 * xy, xx - yy)
     has_way = np.hypot(xx - yy, 2.0 * xy) > 1e-12
-    return np.where(has_way, np.concatenate([np.cos(turn), np.sin(turn)], axis=-1), 0.0)
+    return np.where(has_way, np.concatenate([np.cos(angle), np.sin(angle)], axis=-1), 0.0)
 
 
 def difference_of_gaussians(

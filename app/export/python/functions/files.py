@@ -41,13 +41,13 @@ def read_file(path: str, layer: str) -> tuple[Array, list[str]]:
             raise SystemExit(f"{path}: {f'it has no layer {layer!r}' if part else picture.geterror()}")
         names = list(picture.spec().channelnames)
         groups = [name.rpartition(".")[0] for name in names]
-        wanted = [at for at, group in enumerate(groups) if not layer or group == layer or group.endswith(f".{layer}")]
-        if wanted:
+        channels = [at for at, group in enumerate(groups) if not layer or group == layer or group.endswith(f".{layer}")]
+        if channels:
             break
         part += 1
     order = {name: at for at, name in enumerate("RGBAXYZUV")}
-    wanted.sort(key=lambda at: order.get(names[at].rpartition(".")[2].upper(), at))
-    pixels = np.asarray(picture.get_pixels(oiio.FLOAT, picture.roi_full), np.float64)[..., wanted[:4]]
+    channels.sort(key=lambda at: order.get(names[at].rpartition(".")[2].upper(), at))
+    pixels = np.asarray(picture.get_pixels(oiio.FLOAT, picture.roi_full), np.float64)[..., channels[:4]]
     is_integer = str(picture.spec().format).startswith(("u", "int"))
     if pixels.shape[2] == 3 and is_integer:
         pixels = np.concatenate([pixels, np.ones_like(pixels[..., :1])], axis=-1)

@@ -79,14 +79,14 @@ def ghosts(
     outward = away / np.maximum(length(away), 1e-6)
     flare = veil * blurred(light, 0.15 * rows, "black")[..., :3]
     for channel in range(3):
-        larger, one = 1.0 + chromatic * (1 - channel), np.eye(3)[channel]
+        larger, channel_mask = 1.0 + chromatic * (1 - channel), np.eye(3)[channel]
         for number, factor in enumerate(MAGNIFICATIONS[:count]):
             coating = mix(1.0, with_hue(np.array([0.2, 0.5, 1.0]), np.array((0.12 + 0.618034 * number) % 1.0)), colors)
             magnified = factor * spread * larger
             seen = ghost_light(sharp, axis + away / magnified)[..., :3]
-            flare = flare + ghosts * coating[channel] / magnified**2 * seen * one
+            flare = flare + ghosts * coating[channel] / magnified**2 * seen * channel_mask
         ring = axis + away - 0.5 * radius * larger * outward
-        flare = flare + halo * ghost_light(sharp, ring)[..., :3] * one
+        flare = flare + halo * ghost_light(sharp, ring)[..., :3] * channel_mask
     flare = enlarged(join(flare, np.ones_like(flare[..., :1])), 2, width, height)[..., :3]
     smudges = lens_smudges(width, height) if dirt is None else np.clip(dirt[..., :3], 0.0, 65504.0)
     glow = join(flare * mix(1.0, smudges, dirt_amount) * rgb(tint), image[..., 3:])

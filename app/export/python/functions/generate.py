@@ -174,8 +174,8 @@ def wave(
     along = away[..., :1] * np.cos(angle) + away[..., 1:] * np.sin(angle)
     place = np.concatenate([at / np.maximum(size, 1e-3), np.zeros_like(at[..., :1])], axis=-1)
     bend = distortion * simplex_noise(place, np.array([seed, 0, 0]), np.full(3, ENDLESS))[..., :1]
-    turn = (length(away) if pattern == "rings" else along) / np.maximum(wavelength, 1e-3) - phase + bend
-    t = turn - np.floor(turn)
+    cycles = (length(away) if pattern == "rings" else along) / np.maximum(wavelength, 1e-3) - phase + bend
+    t = cycles - np.floor(cycles)
     value = {
         "sine": 0.5 - 0.5 * np.cos(2.0 * np.pi * t),
         "triangle": 1.0 - np.abs(2.0 * t - 1.0),
@@ -303,9 +303,11 @@ def gabor_noise(
             start, dice = hash3(cell, stream), hash3(cell + np.array([0, 0, 1]), stream)
             p = away - start[..., :2] * side
             square = (p * p).sum(axis=-1, keepdims=True)
-            way = angle + spread * (2.0 * dice[..., :1] - 1.0)
+            direction = angle + spread * (2.0 * dice[..., :1] - 1.0)
             phase = start[..., 2:] + np.where(dice[..., 1:2] < 0.5, evolution % 1.0, -(evolution % 1.0))
-            crest = np.cos(2.0 * np.pi * (turns * (p[..., :1] * np.cos(way) + p[..., 1:] * np.sin(way)) + phase))
+            crest = np.cos(
+                2.0 * np.pi * (turns * (p[..., :1] * np.cos(direction) + p[..., 1:] * np.sin(direction)) + phase)
+            )
             total = total + np.where(square < 1.0, (np.exp(-np.pi * square) - end) / (1.0 - end) * crest, 0.0)
     # 0.461243: the integral of the squared window over a disc of radius 1
     deviation = np.sqrt(waves * 0.461243 / (2.0 * side[0] * side[1]))

@@ -43,13 +43,13 @@ def bright_pass(
     safe = np.where(light > 0.0, light, 1.0)
     bounded = np.minimum(safe, limit)
     ratio = bounded / np.maximum(threshold, 1e-5)
-    kept = {
+    glowing = {
         "hard": np.where(bounded > threshold, bounded, 0.0),
         "soft": soft_threshold(bounded, threshold, knee),
         "exponential": bounded * (1.0 - np.exp(-(ratio**power))),
         "power": bounded * ratio**power,
     }.get(mode, bounded)
-    share = np.where(light > 0.0, kept / safe * np.clip(mask, 0.0, 1.0), 0.0)
+    share = np.where(light > 0.0, glowing / safe * np.clip(mask, 0.0, 1.0), 0.0)
     return join(np.clip(image[..., :3] * share, -65504.0, 65504.0), image[..., 3:])
 
 
@@ -238,14 +238,14 @@ def enlarged(image: Array, factor: int, width: int, height: int) -> Array:
     return bilinear(image, grid(width, height) / factor)
 
 
-def streak(light: Array, turn: float, reach: float, dispersion: float, edge: str) -> Array:
+def streak(light: Array, angle: float, reach: float, dispersion: float, edge: str) -> Array:
     """Light along one arm, which fades to a hundredth at `reach`, red and blue at other lengths (Kawase 2003).
 
     Each pass is the mean of four samples, with four times the distance and fade^4 of the pass before: their product is
     the geometric series of all samples.
     """
     height, width = light.shape[:2]
-    back = np.array([-np.cos(turn), np.sin(turn)])  # a pixel finds its light where the arm came from
+    back = np.array([-np.cos(angle), np.sin(angle)])  # a pixel finds its light where the arm came from
     lengths = np.maximum(reach * (np.array([611.0, 549.0, 464.0]) / 549.0) ** dispersion, 1e-3)
     stride = 1
     while stride < 1.5 * lengths.max():
@@ -277,8 +277,8 @@ def streaks(
     height, width = image.shape[:2]
     factor = {"full": 1, "half": 2, "quarter": 4}[quality]
     light = shrunk(bright_light(image, threshold, knee, limit), factor, edge)
-    turns = [angle + 2.0 * np.pi * arm / arms for arm in range(arms)]
-    star = sum(streak(light, turn, length / factor, dispersion, edge) for turn in turns)
+    arm_angles = [angle + 2.0 * np.pi * arm / arms for arm in range(arms)]
+    star = sum(streak(light, arm_angle, length / factor, dispersion, edge) for arm_angle in arm_angles)
     star = np.asarray(star) if factor == 1 else enlarged(np.asarray(star), factor, width, height)
     glow = join(star[..., :3] / arms * rgb(tint), image[..., 3:])
     return join(image[..., :3] + intensity * glow[..., :3], image[..., 3:]), glow
@@ -314,12 +314,12 @@ def film_halation(
     """The halo of bright light on film, one for each layer of color: the picture with it, and the halo alone."""
     light = np.clip(image[..., :3], 0.0, limit)
     light = np.where(light > 0.0, soft_threshold(light, np.asarray(threshold), knee), 0.0)
-    way = radius / np.tan(np.arcsin(1.0 / 1.48))  # total reflection begins at this radius
+    thickness = radius / np.tan(np.arcsin(1.0 / 1.48))  # total reflection begins at this radius
     layers = []
     for layer in range(3):
         channel = light[..., layer : layer + 1]
         mixture = halo_mixture(min(max(reach[layer], 0.5), 1.0))
-        layers.append(sum(share * blurred(channel, sigma * way, edge) for sigma, share in mixture))
+        layers.append(sum(share * blurred(channel, sigma * thickness, edge) for sigma, share in mixture))
     glow = join(amount * rgb(color) * np.maximum(np.concatenate(layers, axis=-1), 0.0), image[..., 3:])
     return join(image[..., :3] + glow[..., :3], image[..., 3:]), glow
 

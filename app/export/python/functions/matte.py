@@ -34,9 +34,9 @@ def luma_key(
         "minimum": smallest(color),
         "saturation": np.where(most > 0.0, 1.0 - smallest(color) / np.where(most > 0.0, most, 1.0), 0.0),
     }[measure]
-    kept = ramp(light - low, low_softness) * ramp(high - light, high_softness)
-    kept = 1.0 - kept if invert else kept
-    return image * kept, np.clip(image[..., 3:], 0.0, 1.0) * kept
+    matte = ramp(light - low, low_softness) * ramp(high - light, high_softness)
+    matte = 1.0 - matte if invert else matte
+    return image * matte, np.clip(image[..., 3:], 0.0, 1.0) * matte
 
 
 def screen_channel(screen: Array) -> int:
@@ -211,11 +211,11 @@ def contour_distance(mask: Array, most: float) -> Array:
         nearest, row, column = np.full(mask.shape[:2], most**2), -np.ones_like(y), np.zeros_like(x)
         for away in range(mask.shape[1]):
             for beside in (x - away, x + away):
-                found = rows[y, np.clip(beside, 0, mask.shape[1] - 1)]
-                square = away**2 + (found - y) ** 2.0
+                row_beside = rows[y, np.clip(beside, 0, mask.shape[1] - 1)]
+                square = away**2 + (row_beside - y) ** 2.0
                 nearer = (beside >= 0) & (beside < mask.shape[1]) & (square < nearest)
                 nearest = np.where(nearer, square, nearest)
-                row, column = np.where(nearer, found, row).astype(int), np.where(nearer, beside, column)
+                row, column = np.where(nearer, row_beside, row).astype(int), np.where(nearer, beside, column)
         cover = np.clip(mask[..., 0], 0.0, 1.0)
         cover = 1.0 - cover if kind else cover  # by the other kind
         sideways = np.abs(x - column) > np.abs(y - row)
@@ -261,12 +261,12 @@ def fill_holes(matte: Array, turns: int) -> Array:
         for axis in (1, 0):
             most, arrived = np.maximum(low, filled), []
             for step in (1, -1):
-                way = np.moveaxis(np.empty_like(low), axis, 0)
+                least_barrier = np.moveaxis(np.empty_like(low), axis, 0)
                 least, limit = (np.moveaxis(each, axis, 0)[::step] for each in (low, most))
                 coming = np.zeros(least.shape[1:])  # from outside of the picture
                 for at in range(len(least)):
                     coming = np.clip(coming, least[at], limit[at])
-                    way[at] = coming
-                arrived.append(np.moveaxis(way[::step], 0, axis))
+                    least_barrier[at] = coming
+                arrived.append(np.moveaxis(least_barrier[::step], 0, axis))
             filled = np.minimum(*arrived)
     return filled[..., None]

@@ -35,8 +35,8 @@ def histogram(
     at = {"red": 0, "green": 1, "blue": 2, "alpha": 3}
     light = luminance_of(image) if channel == "luminance" else image[..., at[channel]]
     shares = (low_percentile, middle_percentile, high_percentile)
-    found = [*np.percentile(light, shares, method="inverted_cdf"), light.mean(), light.std()]
-    numbers = [np.reshape(number, (1, 1, 1)) for number in found]
+    statistics = [*np.percentile(light, shares, method="inverted_cdf"), light.mean(), light.std()]
+    numbers = [np.reshape(number, (1, 1, 1)) for number in statistics]
     return numbers[0], numbers[1], numbers[2], numbers[3], numbers[4]
 
 
@@ -92,7 +92,7 @@ def auto_exposure(
         average = float(np.exp((weight * np.log(light + 1e-5)).sum() / weight.sum()))
     stops = compensation
     if average > 0.0:
-        wanted = 1.0 if metering == "maximum" else float(natural_key(average * nits)) if auto_key else key
-        stops += min(max(np.log2(wanted / average), min(minimum, maximum)), maximum)
+        target = 1.0 if metering == "maximum" else float(natural_key(average * nits)) if auto_key else key
+        stops += min(max(np.log2(target / average), min(minimum, maximum)), maximum)
     shown = join(image[..., :3] * np.exp2(stops), image[..., 3:])
     return shown, np.full((1, 1, 1), stops), np.full((1, 1, 1), average)

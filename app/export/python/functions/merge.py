@@ -66,20 +66,20 @@ def spread(color: Array) -> Array:
     return largest(color) - smallest(color)
 
 
-def with_luminance(color: Array, wanted: Array, ceiling: Array) -> Array:
+def with_luminance(color: Array, luminance: Array, ceiling: Array) -> Array:
     """The color with another luminance, moved toward gray as far as it leaves 0..ceiling."""
-    color = color + wanted - luminance_of(color)
+    color = color + luminance - luminance_of(color)
     low = smallest(color)
     high = largest(color)
-    raised = wanted + (color - wanted) * wanted / np.maximum(wanted - low, 1e-9)
+    raised = luminance + (color - luminance) * luminance / np.maximum(luminance - low, 1e-9)
     color = np.where(low < 0.0, raised, color)
-    lowered = wanted + (color - wanted) * (ceiling - wanted) / np.maximum(high - wanted, 1e-9)
+    lowered = luminance + (color - luminance) * (ceiling - luminance) / np.maximum(high - luminance, 1e-9)
     return np.where(high > ceiling, lowered, color)
 
 
-def with_saturation(color: Array, wanted: Array) -> Array:
+def with_saturation(color: Array, saturation: Array) -> Array:
     """The color with another difference between its largest and smallest channel."""
-    return (color - smallest(color)) * wanted / np.maximum(spread(color), 1e-9)
+    return (color - smallest(color)) * saturation / np.maximum(spread(color), 1e-9)
 
 
 def blend_colors(mode: str, b: Array, a: Array) -> Array:

@@ -25,8 +25,8 @@ def lattice_density(tiles: Array, density: float, period: Array) -> Array:
 def lattice_place(at: Array, size: float, period: tuple[float, float], evolution: float, loop: float) -> Array:
     """Places [..., 3] in the first layer; along an axis that repeats, within the period."""
     place = np.concatenate([at, np.full_like(at[..., :1], evolution)], axis=-1)
-    turn = np.array([*period, loop])
-    place = place - np.where(turn > 0.0, turn * np.floor(place / np.maximum(turn, 1e-6)), 0.0)
+    periods = np.array([*period, loop])
+    place = place - np.where(periods > 0.0, periods * np.floor(place / np.maximum(periods, 1e-6)), 0.0)
     return place / (size, size, 1.0)
 
 

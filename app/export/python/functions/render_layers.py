@@ -208,11 +208,11 @@ def fog(
 ) -> tuple[Array, Array]:
     """Add fog that hides more with the depth (the three kinds of fog of OpenGL): the picture, and what fog hides."""
     there = nearness(depth) > 0.0
-    way = np.maximum(np.where(there, depth, 1e10) - start, 0.0)
+    fog_depth = np.maximum(np.where(there, depth, 1e10) - start, 0.0)
     if mode == "linear":
-        hidden = np.where(there, np.clip(way / np.maximum(np.subtract(end, start), 1e-6), 0.0, 1.0), sky)
+        hidden = np.where(there, np.clip(fog_depth / np.maximum(np.subtract(end, start), 1e-6), 0.0, 1.0), sky)
     else:
-        thick = density * way
+        thick = density * fog_depth
         thick = thick**2 if mode == "exponential squared" else thick
         hidden = (1.0 - np.exp(-np.minimum(thick, 80.0))) * np.where(there, 1.0, sky)
     hidden = color[3] * hidden

@@ -12,10 +12,10 @@ def sanitize(image: Array, repair: str, negative: str, maximum: float, limit_alp
     broken = ~np.isfinite(image)
     if repair == "neighbors":
         height, width = image.shape[:2]
-        kept = np.pad(np.where(broken, 0.0, image), ((1, 1), (1, 1), (0, 0)))
+        padded = np.pad(np.where(broken, 0.0, image), ((1, 1), (1, 1), (0, 0)))
         count = np.pad(np.where(broken, 0.0, 1.0), ((1, 1), (1, 1), (0, 0)))
         around = [np.s_[y : y + height, x : x + width] for y in range(3) for x in range(3)]
-        total, whole = sum(kept[part] for part in around), sum(count[part] for part in around)
+        total, whole = sum(padded[part] for part in around), sum(count[part] for part in around)
         image = np.where(broken, total / np.maximum(whole, 1.0), image)
     else:
         image = np.where(broken, 0.0, image)

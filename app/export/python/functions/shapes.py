@@ -15,9 +15,9 @@ def polygon_distance(p: Array, count: int, is_star: bool, inner: float, half: Ar
     """The distance to a polygon, or to a star whose odd corners lie further in; below 0 inside (Quilez 2019)."""
     corners = []
     for number in range(count):
-        turn = 2.0 * np.pi * number / count
+        angle = 2.0 * np.pi * number / count
         radius = inner if is_star and number % 2 else 1.0
-        corners.append(radius * half * np.array([np.sin(turn), -np.cos(turn)]))
+        corners.append(radius * half * np.array([np.sin(angle), -np.cos(angle)]))
     nearest, outside = np.full(p.shape[:-1], np.inf), np.ones(p.shape[:-1])
     for before, corner in zip([corners[-1], *corners[:-1]], corners, strict=True):
         edge, to = before - corner, p - corner
@@ -67,10 +67,10 @@ def shape(
     """
     place = grid(width, height) - np.asarray(center) * (width, height)
     cos, sin = np.cos(rotation), np.sin(rotation)
-    turn = np.array([[cos, -sin], [sin, cos]])
+    rotated = np.array([[cos, -sin], [sin, cos]])
 
     def distance(at: Array) -> Array:
-        return shape_distance(at @ turn, shape, size, roundness, points, inner)
+        return shape_distance(at @ rotated, shape, size, roundness, points, inner)
 
     def cover_at(away: Array) -> Array:
         t = np.clip(0.5 - away / max(softness, 1.0 / 24.0), 0.0, 1.0)

@@ -154,10 +154,10 @@ def halftone(image: Array, inks: str, pattern: str, size: float, angle: float) -
 
 def layer_turn(layer: int) -> float:
     """The direction of a layer of strokes: 0, 90, 45, 135 degrees, ... (van der Corput sequence)."""
-    turn, part = 0.0, 0.5
+    half_turns, part = 0.0, 0.5
     while layer:
-        turn, part, layer = turn + part * (layer & 1), 0.5 * part, layer >> 1
-    return turn * np.pi
+        half_turns, part, layer = half_turns + part * (layer & 1), 0.5 * part, layer >> 1
+    return half_turns * np.pi
 
 
 def crosshatch(
@@ -170,8 +170,8 @@ def crosshatch(
     for place in nine_places(width, height):
         hit = np.zeros(dark.shape, bool)
         for layer in range(min(layers, 16)):
-            turn = angle + layer_turn(layer)
-            across = (place[..., :1] * np.sin(turn) + place[..., 1:] * np.cos(turn)) / max(size, 0.5)
+            direction = angle + layer_turn(layer)
+            across = (place[..., :1] * np.sin(direction) + place[..., 1:] * np.cos(direction)) / max(size, 0.5)
             beside = 2.0 * np.abs(across % 1.0 - 0.5)
             hit |= beside < np.clip(dark - layer, 0.0, 1.0) * thickness
         covered = covered + hit / 9.0
@@ -203,7 +203,9 @@ def glitch(
             moved += np.where(jumps, shift * (2.0 * dice[..., 1:2] - 1.0), 0.0)
             apart += np.where(jumps, colors * (2.0 * dice[..., 2:] - 1.0), 0.0)
         right = np.array([1.0, 0.0])
-        red, middle, blue = (bilinear(image, places + (moved + way * apart) * right, edge) for way in (1.0, 0.0, -1.0))
+        red, middle, blue = (
+            bilinear(image, places + (moved + side * apart) * right, edge) for side in (1.0, 0.0, -1.0)
+        )
         result += weight * np.concatenate([red[..., :1], middle[..., 1:2], blue[..., 2:3], middle[..., 3:]], axis=-1)
     return result
 
@@ -304,8 +306,8 @@ def kuwahara_sectors(tones: Array, tensor: Array, radius: float, sharpness: floa
     apart = np.hypot(xx - yy, 2.0 * xy)
     has_way = (apart > 1e-12) & stretched
     anisotropy = np.where(has_way, apart / np.where(has_way, xx + yy, 1.0), 0.0)
-    turn = 0.5 * np.arctan2(2.0 * xy, xx - yy)
-    along_x, along_y = np.where(has_way, -np.sin(turn), 1.0), np.where(has_way, np.cos(turn), 0.0)
+    angle = 0.5 * np.arctan2(2.0 * xy, xx - yy)
+    along_x, along_y = np.where(has_way, -np.sin(angle), 1.0), np.where(has_way, np.cos(angle), 0.0)
     long, short = radius * (1.0 + anisotropy), radius / (1.0 + anisotropy)
     zeta, crossing = 2.0 / radius, 0.1875 * np.pi
     eta = (zeta + np.cos(crossing)) / np.sin(crossing) ** 2

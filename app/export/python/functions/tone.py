@@ -18,9 +18,9 @@ def hue_of(color: Array) -> Array:
     return np.where(spread > 0.0, (sixth / 6.0) % 1.0, 0.0)
 
 
-def with_hue(color: Array, turn: Array) -> Array:
+def with_hue(color: Array, hue: Array) -> Array:
     """The color with another hue; its largest and smallest channel stay."""
-    share = np.clip(np.abs(((turn + np.array([0.0, 2.0, 1.0]) / 3.0) % 1.0) * 6.0 - 3.0) - 1.0, 0.0, 1.0)
+    share = np.clip(np.abs(((hue + np.array([0.0, 2.0, 1.0]) / 3.0) % 1.0) * 6.0 - 3.0) - 1.0, 0.0, 1.0)
     return mix(smallest(color), largest(color), share)
 
 
@@ -59,8 +59,8 @@ def agx(color: Array) -> Array:
     reach = np.where(x < pivot, 0.565675607, 0.715198286)  # so that the curve ends at 0 and 1
     u = slope * (x - pivot) / reach
     formed = np.maximum(gray + reach * u / (1.0 + np.abs(u) ** 1.5) ** (1.0 / 1.5), 0.0) ** 2.4
-    turn = hue_of(formed) - hue_of(scene)
-    formed = with_hue(formed, hue_of(scene) + 0.4 * (turn - np.round(turn)))
+    shift = hue_of(formed) - hue_of(scene)
+    formed = with_hue(formed, hue_of(scene) + 0.4 * (shift - np.round(shift)))
     return np.clip(formed @ AGX_OUTSET.T @ np.linalg.inv(REC709_TO_REC2020).T, 0.0, 1.0)
 
 
@@ -267,10 +267,10 @@ def from_oklab(lab: Array) -> Array:
     return (lab @ np.linalg.inv(TO_LAB).T) ** 3 @ np.linalg.inv(TO_CONES).T
 
 
-def turned(lab: Array, turn: Array | float, factor: Array | float) -> Array:
-    """OKLab with the hue rotated by `turn` radians and the chroma scaled."""
+def turned(lab: Array, angle: Array | float, factor: Array | float) -> Array:
+    """OKLab with the hue rotated by `angle` radians and the chroma scaled."""
     lightness, a, b = lab[..., 0:1], lab[..., 1:2], lab[..., 2:3]
-    cos, sin = np.cos(turn), np.sin(turn)
+    cos, sin = np.cos(angle), np.sin(angle)
     return np.concatenate([lightness, factor * (cos * a - sin * b), factor * (sin * a + cos * b)], axis=-1)
 
 
@@ -308,11 +308,11 @@ def hue_curves(
     gray = (span <= 1e-6 * most) | (most <= 0.0)
     hue = np.where(gray, 0.0, hue_of(positive))
     saturation = np.where(gray, 0.0, span / np.where(gray, 1.0, most))
-    turn = 2.0 * np.pi * saturation * curve_at(hue_by_hue, hue)
+    angle = 2.0 * np.pi * saturation * curve_at(hue_by_hue, hue)
     factor = mix(1.0, curve_at(saturation_by_hue, hue), saturation)
     factor = factor * curve_at(saturation_by_saturation, saturation)
     light = mix(1.0, curve_at(light_by_hue, hue), saturation)
-    return join(light * from_oklab(turned(to_oklab(image[..., :3]), turn, factor)), image[..., 3:])
+    return join(light * from_oklab(turned(to_oklab(image[..., :3]), angle, factor)), image[..., 3:])
 
 
 def over_exposure(
