@@ -6,11 +6,12 @@ A flipbook is a session of its own, with a graph that does nothing but read them
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
 
 from halation.nodes import catalogue
+from msgspec import Struct
 
 from .. import document
 from ..errors import InputError
@@ -28,8 +29,7 @@ _ENCODED = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".gif",
 """Formats whose pictures have been through a view already."""
 
 
-@dataclass(frozen=True)
-class FlipbookStrip:
+class FlipbookStrip(Struct, frozen=True):
     """Pictures that are played: a path with a place for the frame, or a single one; `view` shows what is in EXR files.
 
     `export` is the render that writes them.

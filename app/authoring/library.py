@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import os
 import re
-from dataclasses import dataclass, field
 from pathlib import Path
 
 from halation.presets import paths as shipped_paths
 from halation.presets import picture
+from msgspec import Struct, field
 
 from ..color.transforms import Array
 from ..custom_nodes.plugins import name_presets
@@ -36,8 +36,7 @@ _RESERVED = frozenset(
 """Names that Windows gives to devices, whatever their ending: shared folders are read there too."""
 
 
-@dataclass(frozen=True)
-class PresetFacts:
+class PresetFacts(Struct, frozen=True):
     """A preset in the library. `fault` says why its file cannot be read, "" if it can."""
 
     path: Path

@@ -5,9 +5,10 @@ from __future__ import annotations
 import traceback
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from time import time
 from typing import Literal, TypeVar
+
+from msgspec import Struct, field
 
 from ..errors import HalationError
 from ..language.translation import translate
@@ -22,8 +23,7 @@ TOAST_SECONDS = 6.0
 """Seconds for which a message stays over the window. A choice: long enough for two lines."""
 
 
-@dataclass(frozen=True)
-class LogEntry:
+class LogEntry(Struct, frozen=True):
     """One message; `detail` (such as a traceback) is shown on demand. `at` is in seconds since 1970."""
 
     sentence: str
@@ -32,8 +32,7 @@ class LogEntry:
     detail: str = ""
 
 
-@dataclass
-class Log:
+class Log(Struct):
     """The last messages, oldest first."""
 
     entries: deque[LogEntry] = field(default_factory=lambda: deque[LogEntry](maxlen=KEPT))

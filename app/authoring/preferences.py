@@ -7,12 +7,13 @@ import json
 import os
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any, Literal, cast, get_type_hints
 
 import msgspec
+from msgspec import Struct, field
+from msgspec.structs import fields, replace
 
 from ..errors import OutputError, UsageError
 from ..language.translation import translate
@@ -40,8 +41,7 @@ def _scale(number: float) -> float:
     return number
 
 
-@dataclass(frozen=True)
-class Recent:
+class Recent(Struct, frozen=True):
     """A graph file that was open; `time` is in seconds since 1970."""
 
     path: str
@@ -53,8 +53,7 @@ class Recent:
         return os.path.isfile(self.path)  # noqa: PTH113 - False, not an error, for a path that no system allows
 
 
-@dataclass(frozen=True)
-class Preferences:
+class Preferences(Struct, frozen=True):
     """`ui_scale` is 0 for what the system says, `language` is "" then. `keymap` is the program whose shortcuts
     are used, `shortcuts` are those that differ from it, by action; "" stands for none. `separate_windows` lets panels
     be torn off.

@@ -7,10 +7,10 @@ so nothing is ever lost.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 from halation.presets import picture
+from msgspec import Struct
 
 from ..errors import InputError, OutputError
 from ..language.translation import translate
@@ -18,8 +18,7 @@ from ..resources.atomic_write import write_bytes_atomically
 from ..resources.sandbox import Sandbox
 
 
-@dataclass(frozen=True)
-class PresetVersion:
+class PresetVersion(Struct, frozen=True):
     """An earlier version of a preset. `kept_at` is when another one took its place, in seconds since 1970."""
 
     number: int

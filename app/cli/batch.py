@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 from ..resources.sandbox import Sandbox
 from .outcome import print_note
@@ -19,8 +20,7 @@ if TYPE_CHECKING:
     from ..resources.sandbox import Sandbox
 
 
-@dataclass(frozen=True)
-class Batch:
+class Batch(Struct, frozen=True):
     """A renderer, and a progress bar on terminals."""
 
     renderer: Renderer

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from msgspec import structs
+from msgspec import Struct, structs
+from msgspec.structs import asdict
 
 from ..fit.value_patterns import CURVE_POINTS
 from ..resources.render_choices import DEFAULT_TIMEOUT
@@ -133,8 +133,7 @@ def fit(
     return 0
 
 
-@dataclass(frozen=True)
-class _FitRequest:
+class _FitRequest(Struct, frozen=True):
     """What the command line says of the pictures, and of the search."""
 
     inputs: Mapping[str, str]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from msgspec import Struct
 
 from ..resources.sandbox import UNRESTRICTED, read_process_sandbox
 from .batch import find_middle_frame, open_batch
@@ -37,8 +37,7 @@ _FRAMES_SHOWN = 6
 """Frames per animated preset, from the first to the last: as many as fit in a row of the sheet."""
 
 
-@dataclass(frozen=True)
-class Sheet:
+class Sheet(Struct, frozen=True):
     """A contact sheet: its display colors, and the names of its pictures in order."""
 
     light: Array

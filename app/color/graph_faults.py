@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 from ..errors import HalationError
 from ..graph import OUTPUTS, Graph, color_settings
@@ -13,8 +14,7 @@ from .file_space import find_requested_space
 from .management import get_color_manager
 
 
-@dataclass(frozen=True)
-class ColorFault:
+class ColorFault(Struct, frozen=True):
     """A fault, the input or output of the graph that has it, if any, and its place in the file."""
 
     error: HalationError

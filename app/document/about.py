@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import cast
 
 import msgspec
+from msgspec import Struct
 
 from ..errors import DocumentError
 from ..graph import Graph
@@ -16,8 +17,7 @@ from ..resources.sandbox import Sandbox
 from ..resources.typed_data import decode_data
 
 
-@dataclass(frozen=True)
-class About:
+class About(Struct, frozen=True):
     """The description and the tags of a preset. The first tag is its category."""
 
     doc: str = ""

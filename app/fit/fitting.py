@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
 from math import sqrt
 from typing import Literal
+
+from msgspec import Struct
 
 from ..errors import UsageError
 from ..media.comparison.metrics import Array
@@ -50,8 +51,7 @@ _ARRIVED = 0.1
 """The share of the first error below which a descent has arrived. Else it may lie in a wrong valley."""
 
 
-@dataclass(frozen=True)
-class FitTask:
+class FitTask(Struct, frozen=True):
     """What is fitted, the reference as light [h, w, 3], how it is compared, and how much it may take."""
 
     space: SearchSpace

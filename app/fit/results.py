@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from halation.nodes import Plain
+from msgspec import Struct
 
 from ..graph import Graph
 from ..media.comparison.color_difference import delta_e_2000, to_lab
@@ -26,8 +26,7 @@ _VISIBLE = 0.1
 much."""
 
 
-@dataclass(frozen=True)
-class FittedValue:
+class FittedValue(Struct, frozen=True):
     """A number before and after, with its range.
 
     `curvature` is how much the error grows per range if the number moves away while all others make up for it as well
@@ -43,8 +42,7 @@ class FittedValue:
     is_determined: bool
 
 
-@dataclass(frozen=True)
-class FitResult:
+class FitResult(Struct, frozen=True):
     """The fitted graph, its settings by path, its numbers, and the pictures before, after and wanted.
 
     Pictures are light, [h, w, 3].

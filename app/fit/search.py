@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
 
 import numpy as np
+from msgspec import Struct, field
 
 from ..media.comparison.metrics import Array
 from .likeness import Likeness
@@ -26,8 +26,7 @@ class BudgetSpent(Exception):
     """Ends a search from within: its time or its renders are used up, or the user has stopped it."""
 
 
-@dataclass
-class FitMeter:
+class FitMeter(Struct):
     """Counts renders and seconds. `should_stop` is asked before each render; `report` is told after it."""
 
     seconds: float

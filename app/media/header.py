@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 import OpenImageIO as oiio
+from msgspec import Struct
 
 from ..graph.frames import is_video
 from ..resources.sandbox import Sandbox
@@ -20,8 +20,7 @@ Value = int | float | str | tuple[Any, ...]
 Window = tuple[int, int, int, int]
 
 
-@dataclass(frozen=True)
-class PartHeader:
+class PartHeader(Struct, frozen=True):
     """One part of a file. Windows are left, top, width and height; `tag` is the color space, "data" or ""."""
 
     index: int
@@ -36,8 +35,7 @@ class PartHeader:
     tag: str
 
 
-@dataclass(frozen=True)
-class FileHeader:
+class FileHeader(Struct, frozen=True):
     """The header of a file. `attributes` are those of all parts; of equal names the first one counts."""
 
     info: ImageInfo

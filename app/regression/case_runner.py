@@ -6,10 +6,12 @@ import os
 import tempfile
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from functools import reduce
 from pathlib import Path
 from typing import Any
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from .. import document
 from ..compiler import find_named_files
@@ -27,8 +29,7 @@ from .pictures import make_views, write_failure_pictures
 from .results import Outcome, PictureCheck
 
 
-@dataclass(frozen=True)
-class RunOptions:
+class RunOptions(Struct, frozen=True):
     """The settings of a run. `update` writes goldens that are missing or differ; `out` is a folder for failed pictures.
 
     With `pictures`, failed checks get views for a report.

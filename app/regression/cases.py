@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+
+from msgspec import Struct, field
 
 ENDING = ".suite.toml"
 
 
-@dataclass(frozen=True)
-class Metric:
+class Metric(Struct, frozen=True):
     """A measure of the difference of pictures. `least` means that the tolerance is the smallest allowed value."""
 
     name: str
@@ -46,16 +46,14 @@ METRICS = {
 }
 
 
-@dataclass(frozen=True)
-class Golden:
+class Golden(Struct, frozen=True):
     """A picture that a case must give. `output` is the graph's; "" stands for all of them."""
 
     path: Path
     output: str = ""
 
 
-@dataclass(frozen=True)
-class Case:
+class Case(Struct, frozen=True):
     """One test. Paths are complete; `values` are as they stand in the file.
 
     Without goldens a case must only render. With `error` it must fail, with this text in the sentence. `failing` is

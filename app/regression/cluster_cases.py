@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Generator, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 from uuid import uuid4
 
 import msgspec
+from msgspec.structs import replace
 
 from ..cluster.connection import iterate_finished
 from ..cluster.render_process import ProcessLimits, share_cores

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from math import inf
 from pathlib import Path
 
 import numpy as np
+from msgspec.structs import replace
 
 from ..errors import HalationError
 from ..media.comparison.metrics import EIGHT_BIT_STEP, PictureDifference, compare_pictures

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
 from math import isfinite
 from pathlib import Path
 from typing import Any, Literal
+
+from msgspec import Struct
+from msgspec.structs import asdict
 
 from ..media.comparison.metrics import PictureDifference
 from .cases import Case
@@ -14,8 +16,7 @@ from .cases import Case
 Status = Literal["passed", "failed", "blessed", "skipped"]
 
 
-@dataclass(frozen=True)
-class PictureViews:
+class PictureViews(Struct, frozen=True):
     """PNG files of what was rendered, what was expected and the amplified difference; the last two may be missing."""
 
     actual: bytes
@@ -24,8 +25,7 @@ class PictureViews:
     gain: float = 1.0
 
 
-@dataclass(frozen=True)
-class PictureCheck:
+class PictureCheck(Struct, frozen=True):
     """A picture against its golden. `layer` is the one that is worst; `value` is the case's metric there.
 
     `sentence` says what is wrong, "" if nothing is. `golden_by` and `made_by` are the renderers of both pictures.
@@ -51,8 +51,7 @@ class PictureCheck:
         return f"the golden was made by {self.golden_by}; this is {self.made_by}"
 
 
-@dataclass(frozen=True)
-class Outcome:
+class Outcome(Struct, frozen=True):
     """The outcome of a case. `sentence` says why it failed or was skipped, or which golden was written."""
 
     case: Case
@@ -68,8 +67,7 @@ class Outcome:
         return next((check for check in self.checks if check.sentence), measured[0] if measured else None)
 
 
-@dataclass(frozen=True)
-class CaseResult:
+class CaseResult(Struct, frozen=True):
     """The outcome of a case, and the device that it ran on."""
 
     outcome: Outcome
@@ -77,8 +75,7 @@ class CaseResult:
     software: bool
 
 
-@dataclass(frozen=True)
-class RegressionRun:
+class RegressionRun(Struct, frozen=True):
     """All outcomes in order, and what they were made with. `remark` says what could not be pinned."""
 
     outcomes: Sequence[Outcome]

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 import tomllib
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, cast
+
+from msgspec import Struct
 
 from ..document.disk import read_text
 from ..errors import DocumentError, HalationError
@@ -31,8 +32,7 @@ def parse_toml(path: Path, sandbox: Sandbox) -> dict[str, Any]:
         raise DocumentError(str(path), "", "the tables are nested too deeply") from None
 
 
-@dataclass(frozen=True)
-class TomlTable:
+class TomlTable(Struct, frozen=True):
     """A table of a file and its path there. All methods raise DocumentError for an invalid value."""
 
     file: str

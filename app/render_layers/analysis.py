@@ -9,12 +9,13 @@ The header is read at once, pixels when conventions or the camera are first aske
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from pathlib import Path
 from types import MappingProxyType
 
 from halation.nodes import CameraModel, Kind
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from ..color.transforms import Array
 from ..errors import InputError
@@ -36,8 +37,7 @@ _AGREEMENT_PIXELS = 0.5
 pixel open."""
 
 
-@dataclass(frozen=True)
-class RenderCamera:
+class RenderCamera(Struct, frozen=True):
     """The camera of a render, or None, and the reason; `solved` says how exact it is."""
 
     camera: CameraModel | None
@@ -45,14 +45,12 @@ class RenderCamera:
     solution: CameraSolution | None = None
 
 
-@dataclass(frozen=True)
-class _PixelFindings:
+class _PixelFindings(Struct, frozen=True):
     conventions: Mapping[Role, Convention]
     camera: RenderCamera
 
 
-@dataclass(frozen=True)
-class RenderAnalysis:
+class RenderAnalysis(Struct, frozen=True, dict=True):
     """A render: `passes` are its layers with their roles, `before` is the previous frame, if it is given.
 
     `named` are layers that the user has chosen for a role.

@@ -16,11 +16,11 @@ from __future__ import annotations
 import contextlib
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TypeGuard
 
 import numpy as np
 from halation.nodes import CameraModel, Size
+from msgspec import Struct
 
 from ..color.transforms import Array
 from ..errors import InputError
@@ -104,8 +104,7 @@ _MIXER = np.array([1.0, 2.0**0.5, 3.0**0.5])
 the rationals."""
 
 
-@dataclass(frozen=True)
-class CameraSolution:
+class CameraSolution(Struct, frozen=True):
     """A camera, and how well it explains the picture.
 
     `residual` is the median, `worst` the 99th percentile of the distance in pixels between where a place is seen and
@@ -118,8 +117,7 @@ class CameraSolution:
     share: float
 
 
-@dataclass(frozen=True)
-class _Correspondences:
+class _Correspondences(Struct, frozen=True):
     """Positions, homogeneous, where they are seen as fractions of the picture, and depths if known."""
 
     points: Array

@@ -6,9 +6,10 @@ This module knows the habits of renderers; `evidence` finds conventions in the p
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from types import MappingProxyType
+
+from msgspec import Struct
 
 from ..media.layers import normalize_name
 from .naming import RenderProgram, Role
@@ -48,8 +49,7 @@ class MotionDirection(StrEnum):
     """The position one frame later, minus that now."""
 
 
-@dataclass(frozen=True)
-class Convention:
+class Convention(Struct, frozen=True):
     """The convention of a layer: its kind, and the `scale` and then `offset` that convert its channels to standard
     numbers.
 
@@ -70,8 +70,7 @@ class Convention:
         return self.kind.replace("_", " ") or "not known"
 
 
-@dataclass(frozen=True)
-class _Habit:
+class _Habit(Struct, frozen=True):
     """The habit of one renderer for layers with one of these names, unless pixels prove otherwise."""
 
     renderer: RenderProgram

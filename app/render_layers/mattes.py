@@ -10,13 +10,13 @@ import json
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import cast
 
 import numpy as np
 from halation.nodes import Kind, Matte, float_bits
+from msgspec import Struct
 
 from ..color.transforms import Array
 from ..errors import InputError
@@ -64,8 +64,7 @@ def find_mattes(analysis: RenderAnalysis) -> tuple[Matte, ...]:
     return tuple(mattes)
 
 
-@dataclass(frozen=True)
-class IdMap:
+class IdMap(Struct, frozen=True):
     """The id that covers most of each pixel, [h, w] of uint32, 0 for none; and the names of ids."""
 
     ids: Array

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from types import MappingProxyType
+
+from msgspec import Struct
 
 from ..media.channels import DATA_NAMES
 from ..media.layers import normalize_name
@@ -106,8 +107,7 @@ class RenderProgram(StrEnum):
     NUKE = "Nuke"
 
 
-@dataclass(frozen=True)
-class NamingScheme:
+class NamingScheme(Struct, frozen=True):
     """The names of one renderer. `marks` match `attribute=value` of headers that only it writes."""
 
     marks: re.Pattern[str]

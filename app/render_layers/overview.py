@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from types import MappingProxyType
 
 from halation.nodes import Matte
+from msgspec import Struct
 
 from ..errors import InputError
 from ..media.layers import find_layer
@@ -19,8 +19,7 @@ from .recognition import RenderPass, best_claims, suggest_by_role
 from .report import describe_maker, describe_size, format_report, join_choices, list_metadata, list_parts
 
 
-@dataclass(frozen=True)
-class RoleUse:
+class RoleUse(Struct, frozen=True):
     """The layer of a role: the `layer` in use and the one that was `found`, "" for none.
 
     `reason` says why this one, or why none; `open` means that the user has to choose. `fault` is what is wrong with the
@@ -35,8 +34,7 @@ class RoleUse:
     rule: Convention | None = None
 
 
-@dataclass(frozen=True)
-class RenderOverview:
+class RenderOverview(Struct, frozen=True):
     """The description of a render; `fault` says why its pixels cannot be read."""
 
     size: str

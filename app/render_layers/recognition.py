@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from enum import IntEnum
 from types import MappingProxyType
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from ..media.channels import is_depth
 from ..media.layers import Layer, normalize_name, suggest_layers
@@ -44,8 +46,7 @@ class RoleGrounds(IntEnum):
     NONE = 5
 
 
-@dataclass(frozen=True)
-class RenderPass:
+class RenderPass(Struct, frozen=True):
     """A layer and its role. The role is None if it is unknown, or if `candidates` has several.
 
     `rank` counts what would be better layers for the same role; `name` is the word that says what it is,
@@ -62,8 +63,7 @@ class RenderPass:
     group: str = ""
 
 
-@dataclass(frozen=True)
-class FileMaker:
+class FileMaker(Struct, frozen=True):
     """The renderer of a file, and the reason; None if it is unknown."""
 
     renderer: RenderProgram | None

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+from msgspec import Struct
 
 from ..errors import InputError, UsageError
 from ..resources.input_files import read_bytes
@@ -18,8 +19,7 @@ MIN_JUDGED_SHARE = 0.02
 some percent, so a pass that takes less cannot change the result."""
 
 
-@dataclass(frozen=True)
-class Ratio:
+class Ratio(Struct, frozen=True):
     """How many times as long something takes as before: by its median, and by its fastest time.
 
     `nodes` are those of a pass; none for the total. Noise makes one of both ratios large, rarely both, so the smaller
@@ -39,8 +39,7 @@ class Ratio:
         return min(self.median, self.fastest)
 
 
-@dataclass(frozen=True)
-class BaselineComparison:
+class BaselineComparison(Struct, frozen=True):
     """The ratios to a baseline: the total first, then passes that both have. Others are counted as missing or new."""
 
     ratios: tuple[Ratio, ...]

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from statistics import median
+
+from msgspec import Struct
 
 from ..compiler import Pass, Plan
 from ..graph import Graph
@@ -23,8 +24,7 @@ PassName = tuple[tuple[str, ...], tuple[str, ...], int]
 """Identifies a pass in all frames and runs: its nodes, its functions, and how many such passes come before it."""
 
 
-@dataclass(frozen=True)
-class PassTiming:
+class PassTiming(Struct, frozen=True):
     """The seconds of a pass in every run, and the bytes of the textures that it reads and writes."""
 
     nodes: tuple[str, ...]
@@ -44,8 +44,7 @@ class PassTiming:
         return min(self.seconds)
 
 
-@dataclass(frozen=True)
-class Benchmark:
+class Benchmark(Struct, frozen=True):
     """Times of all passes in order, totals of all runs (sums of passes), and the times of what happens once.
 
     `planning` is from graph to plan, `compiling` is the driver's work on programs, `loading` is the first run with all
@@ -73,8 +72,7 @@ class Benchmark:
         return min(self.totals)
 
 
-@dataclass(frozen=True)
-class NodeShare:
+class NodeShare(Struct, frozen=True):
     """The times of all passes of the same nodes: fused nodes share passes and have one time together."""
 
     nodes: tuple[str, ...]

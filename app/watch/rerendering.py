@@ -11,9 +11,10 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, cast
+
+from msgspec import Struct
 
 from ..compiler.library import reload_library
 from ..errors import GraphError, HalationError, InputError
@@ -32,8 +33,7 @@ _CALM_SECONDS = 0.1
 """Seconds without another change after which a burst of changes is over: programs often save several files at once."""
 
 
-@dataclass(frozen=True)
-class WatchReport:
+class WatchReport(Struct, frozen=True):
     """One rendering: its report, or the fault that prevented it; and the files that had changed before, if any."""
 
     changed: tuple[Path, ...]

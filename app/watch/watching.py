@@ -18,12 +18,13 @@ import os
 import threading
 import time
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
 from hashlib import blake2b
 from pathlib import Path
 from typing import Literal
 
 from halation.nodes import Node
+from msgspec import Struct, field
+from msgspec.structs import replace
 from watchfiles import watch
 
 from ..errors import InputError
@@ -55,8 +56,7 @@ _REST_SECONDS = 0.15
 notice."""
 
 
-@dataclass(frozen=True)
-class FileChange:
+class FileChange(Struct, frozen=True):
     """A file whose content changed, or that was created or deleted."""
 
     kind: Kind
@@ -64,16 +64,14 @@ class FileChange:
     exists: bool = True
 
 
-@dataclass(frozen=True)
-class _WatchList:
+class _WatchList(Struct, frozen=True):
     """What is watched: files, and folders with all files below them."""
 
     files: tuple[_Key, ...] = ()
     folders: tuple[_Key, ...] = ()
 
 
-@dataclass(frozen=True)
-class _FileState:
+class _FileState(Struct, frozen=True):
     """The last state of a file: its stamp and since when it has it, and a mark of its content when it last rested."""
 
     stamp: tuple[int, int, int] | None
@@ -82,8 +80,7 @@ class _FileState:
     rests: bool
 
 
-@dataclass
-class _WakeSignal:
+class _WakeSignal(Struct):
     """The events that wake the thread: the end, and another list of files."""
 
     ended: threading.Event = field(default_factory=threading.Event)

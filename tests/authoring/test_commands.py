@@ -17,6 +17,7 @@ from halation.errors import GraphError
 from halation.graph import Graph, Keys, Port
 from halation.nodes import Light, number_lights
 from halation.resources.sandbox import UNRESTRICTED
+from msgspec import structs
 from toy_nodes import TOYS, chain
 
 
@@ -162,8 +163,7 @@ def test_every_command_has_an_example() -> None:
 
 @pytest.mark.parametrize("command_class", CLASSES, ids=lambda item: item.__name__)
 def test_a_command_is_a_documented_frozen_value(command_class: type[EditCommand]) -> None:
-    assert (command_class.__doc__ or "").strip().endswith((".", "`y`.")) and dataclasses.is_dataclass(command_class)
-    assert command_class.__dataclass_params__.frozen
+    assert (command_class.__doc__ or "").strip().endswith((".", "`y`.")) and command_class.__struct_config__.frozen
 
 
 @pytest.mark.parametrize("command_class", CLASSES, ids=lambda item: item.__name__)
@@ -187,10 +187,10 @@ def test_undo_gives_back_the_document_before(
 @pytest.mark.parametrize("command_class", CLASSES, ids=lambda item: item.__name__)
 def test_equal_merge_tokens_make_one_step(command_class: type[EditCommand], session: Session, tmp_path: Path) -> None:
     command = EXAMPLES[command_class](session, tmp_path)
-    if "merge" not in {field.name for field in dataclasses.fields(command)}:
+    if "merge" not in command.__struct_fields__:
         pytest.skip("it is never part of a drag")
     before, steps = session.root, len(session.history.steps)
-    session.apply(dataclasses.replace(command, merge="drag"))
+    session.apply(structs.replace(command, merge="drag"))
     session.abandon("drag")
     assert session.root == before and len(session.history.steps) == steps
 

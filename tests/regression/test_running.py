@@ -6,7 +6,6 @@ import os
 import shutil
 import subprocess
 import sys
-from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from xml.etree import ElementTree as ET
@@ -24,7 +23,7 @@ from halation.regression.results import Outcome
 from halation.renderer import Renderer
 from halation.renderer.pinned_device import pin_driver
 from halation.resources.sandbox import UNRESTRICTED
-from msgspec import structs
+from msgspec.structs import replace
 
 ALL = """
 [defaults]
@@ -318,7 +317,7 @@ def test_stopping_at_the_first_failure(cli, suite) -> None:
 def test_a_gpu_alone_is_told_of(cli, suite, monkeypatch, tmp_path) -> None:
     """Where no software rasterizer is, the tests go on with what there is."""
     real = crew._open_renderer(True, UNRESTRICTED).device
-    device = real.with_target(structs.replace(real.target, renderer="GPU 9000", software=False))
+    device = real.with_target(replace(real.target, renderer="GPU 9000", software=False))
     monkeypatch.setattr(crew, "_open_renderer", lambda *_: Renderer(device, budget=0, sandbox=UNRESTRICTED))
     suite(ALL)
     cli("--update")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import astuple
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +13,7 @@ from halation.nodes import CameraModel, Kind
 from halation.nodes._declare.camera import look_at
 from halation.render_layers.camera import measure_camera, read_header_camera, solve_camera
 from halation.resources.sandbox import UNRESTRICTED
+from msgspec.structs import astuple
 from raycast import cast_rays
 
 ROOT = Path(__file__).parents[2]

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
 from pathlib import Path
+
+from msgspec import Struct, field
 
 from ...custom_nodes import CodeFault
 from ...custom_nodes.isf.header import read_header
@@ -23,8 +24,7 @@ MOST = 5000
 _Key = tuple[tuple[str, int], ...]
 
 
-@dataclass(frozen=True)
-class ShaderFile:
+class ShaderFile(Struct, frozen=True):
     """One shader; `takes` is True if it works on a picture, else it makes one out of nothing."""
 
     path: Path
@@ -37,8 +37,7 @@ def _make_cache() -> BackgroundCache[_Key, tuple[ShaderFile, ...]]:
     return BackgroundCache("shaders", _scan_folders, capacity=2, max_waiting=1)
 
 
-@dataclass
-class ShaderFiles:
+class ShaderFiles(Struct):
     """The ISF shaders of some folders; nothing is read before `find` is called."""
 
     _known: BackgroundCache[_Key, tuple[ShaderFile, ...]] = field(default_factory=_make_cache)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from halation.nodes import Node, Plain
@@ -26,8 +25,7 @@ ABOVE = 380.0
 """Canvas units between a render's node and a matte node above it: the height of a `read_render` with all outputs."""
 
 
-@dataclass(frozen=True)
-class AddNode(EditCommand[str]):
+class AddNode(EditCommand[str], frozen=True):
     """Add a node of a type at canvas position `at`, and select it; gives its id.
 
     With `link`, a source if `output` else a target, it is linked by the first socket that fits. `values` are those that
@@ -45,8 +43,7 @@ class AddNode(EditCommand[str]):
         return add_item(document, type_stem(self.type_id), item, self.at, self.link, self.output)
 
 
-@dataclass(frozen=True)
-class AddGroupFile(EditCommand[str]):
+class AddGroupFile(EditCommand[str], frozen=True):
     """Add a graph file as a node; gives its id."""
 
     path: str | Path
@@ -59,8 +56,7 @@ class AddGroupFile(EditCommand[str]):
         return add_item(document, naming.node_stem(self.path), item, self.at, self.link, self.output)
 
 
-@dataclass(frozen=True)
-class AddCodeFile(EditCommand[str]):
+class AddCodeFile(EditCommand[str], frozen=True):
     """Add a node whose code is in a file; gives its id."""
 
     path: str | Path
@@ -73,8 +69,7 @@ class AddCodeFile(EditCommand[str]):
         return add_item(document, naming.node_stem(self.path), item, self.at, self.link, self.output)
 
 
-@dataclass(frozen=True)
-class AppendNode(EditCommand[str]):
+class AppendNode(EditCommand[str], frozen=True):
     """Add a node behind what is selected, linked with it and in free room; gives its id. Several make a chain."""
 
     addition: AddNode | AddGroupFile | AddCodeFile
@@ -88,8 +83,7 @@ class AppendNode(EditCommand[str]):
         return Edited(edited.label, edited.outcome, graph, (ElementId(edited.outcome),))
 
 
-@dataclass(frozen=True)
-class AddMatte(EditCommand[str]):
+class AddMatte(EditCommand[str], frozen=True):
     """Add a node that cuts out of the render that node `id` reads, above it; gives its id."""
 
     id: str
@@ -102,8 +96,7 @@ class AddMatte(EditCommand[str]):
         return add_item(document, "cryptomatte", node, (x, y - ABOVE), None, True)
 
 
-@dataclass(frozen=True)
-class InsertNode(EditCommand[str]):
+class InsertNode(EditCommand[str], frozen=True):
     """Put a node into the link that feeds `target`: an existing one by id, else a new one of that type; gives its id.
 
     What depends on it is pushed aside where it is in the way.
@@ -135,8 +128,7 @@ class InsertNode(EditCommand[str]):
         return (spots[0][0] + spots[1][0]) / 2.0, (spots[0][1] + spots[1][1]) / 2.0
 
 
-@dataclass(frozen=True)
-class SpliceChain(EditCommand[None]):
+class SpliceChain(EditCommand[None], frozen=True):
     """Put a chain of nodes, moved by a distance with the dots in it, into the link that feeds `target`.
 
     What depends on it is pushed aside where it is in the way.
@@ -160,8 +152,7 @@ class SpliceChain(EditCommand[None]):
         )
 
 
-@dataclass(frozen=True)
-class DropFiles(EditCommand[tuple[str, ...]]):
+class DropFiles(EditCommand[tuple[str, ...]], frozen=True):
     """Add files as nodes: graphs become groups, shaders code, renders `read_render`, others `read_image`; gives ids.
 
     They stand below each other in a column, where they cover nothing.

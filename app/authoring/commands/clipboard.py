@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from ...language.translation import translate
 from ..edits import clipboard, deleting, naming
 from ..edits.clipboard import copy_elements
@@ -13,8 +11,7 @@ from ..state.open_document import OpenDocument
 from .command import EditCommand, Edited, require_selection
 
 
-@dataclass(frozen=True)
-class CutSelection(EditCommand[str]):
+class CutSelection(EditCommand[str], frozen=True):
     """Remove the selection; returns it as text."""
 
     def apply(self, document: OpenDocument) -> Edited[str]:
@@ -25,8 +22,7 @@ class CutSelection(EditCommand[str]):
         )
 
 
-@dataclass(frozen=True)
-class PasteText(EditCommand[tuple[ElementId, ...]]):
+class PasteText(EditCommand[tuple[ElementId, ...]], frozen=True):
     """Add what was copied, or the content of a whole graph file; gives the new elements, which are selected.
 
     The upper left corner comes to `at`, else near where it was. With `keep_links`, links from what is not part of the
@@ -43,8 +39,7 @@ class PasteText(EditCommand[tuple[ElementId, ...]]):
         return Edited(translate("Paste {elements}", elements=naming.describe_elements(keys)), keys, graph, keys)
 
 
-@dataclass(frozen=True)
-class DuplicateSelection(EditCommand[tuple[ElementId, ...]]):
+class DuplicateSelection(EditCommand[tuple[ElementId, ...]], frozen=True):
     """Add a copy of the selection with the same sources; returns the new elements, which are selected."""
 
     offset: Place = (24.0, 24.0)

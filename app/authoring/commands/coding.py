@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 from msgspec import structs
@@ -15,8 +14,7 @@ from ..state.open_document import OpenDocument
 from .command import EditCommand, Edited
 
 
-@dataclass(frozen=True)
-class SetCode(EditCommand[None]):
+class SetCode(EditCommand[None], frozen=True):
     """Give a node another text; links and values stay where their names do. Text that says no node is kept too.
 
     Texts with the same `merge` in a row make one step, as if only the last one had been written: what one of them made
@@ -45,8 +43,7 @@ class SetCode(EditCommand[None]):
         )
 
 
-@dataclass(frozen=True)
-class EmbedCode(EditCommand[None]):
+class EmbedCode(EditCommand[None], frozen=True):
     """Let the code of a node be part of the document; the file stays as it is."""
 
     id: str
@@ -57,8 +54,7 @@ class EmbedCode(EditCommand[None]):
         return Edited(translate("Move code of {id} into the graph", id=self.id), None, graph)
 
 
-@dataclass(frozen=True)
-class LinkCodeFile(EditCommand[None]):
+class LinkCodeFile(EditCommand[None], frozen=True):
     """Let the code of a node come from a file, which holds the same text."""
 
     id: str

@@ -12,10 +12,10 @@ carry the same `merge` token, and the history joins them into one step that goes
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass
 from typing import Generic, TypeVar
+
+from msgspec import Struct
 
 from ...errors import GraphError
 from ...graph import Graph, Port
@@ -27,8 +27,7 @@ from ..state.open_document import OpenDocument
 T = TypeVar("T")
 
 
-@dataclass(frozen=True)
-class Edited(Generic[T]):
+class Edited(Struct, Generic[T], frozen=True):
     """The document after a command, and the `outcome` for its caller, such as the id of a new node.
 
     `graph` takes the place of the graph that the user sees; `root`, if given, that of the whole document. `select` are
@@ -49,12 +48,12 @@ class Edited(Generic[T]):
     """The port that the viewer shows afterwards."""
 
 
-class EditCommand(ABC, Generic[T]):
+class EditCommand(Struct, Generic[T], frozen=True):
     """One thing that a user can do to a document. `T` is what the caller gets back."""
 
-    @abstractmethod
     def apply(self, document: OpenDocument) -> Edited[T]:
         """The document after the command. Raises HalationError with one sentence if the command is invalid."""
+        raise NotImplementedError
 
 
 def require_selection(document: OpenDocument, fault: str) -> frozenset[ElementId]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from ...errors import GraphError
 from ...graph import Port
 from ...language.translation import translate
@@ -14,8 +12,7 @@ from ..state.open_document import OpenDocument
 from .command import EditCommand, Edited
 
 
-@dataclass(frozen=True)
-class AddFrame(EditCommand[ElementId]):
+class AddFrame(EditCommand[ElementId], frozen=True):
     """Add a frame around the selection, or at `at`; returns its id."""
 
     title: str = ""
@@ -34,8 +31,7 @@ class AddFrame(EditCommand[ElementId]):
         return Edited(label, frame, graph, (frame,))
 
 
-@dataclass(frozen=True)
-class EditFrame(EditCommand[None]):
+class EditFrame(EditCommand[None], frozen=True):
     """Set the title or the display-referred color (0 to 1) of a frame; None leaves it."""
 
     frame: ElementId
@@ -53,8 +49,7 @@ class EditFrame(EditCommand[None]):
         return Edited(translate("Edit frame"), None, graph, merge=self.merge)
 
 
-@dataclass(frozen=True)
-class ResizeFrame(EditCommand[None]):
+class ResizeFrame(EditCommand[None], frozen=True):
     """Set the rectangle of a frame."""
 
     frame: ElementId
@@ -71,8 +66,7 @@ class ResizeFrame(EditCommand[None]):
         return Edited(translate("Resize frame"), None, graph, merge=self.merge)
 
 
-@dataclass(frozen=True)
-class AddComment(EditCommand[ElementId]):
+class AddComment(EditCommand[ElementId], frozen=True):
     """Add a comment at a position; returns its id."""
 
     at: Place
@@ -83,8 +77,7 @@ class AddComment(EditCommand[ElementId]):
         return Edited(translate("Add comment"), comment, graph, (comment,))
 
 
-@dataclass(frozen=True)
-class EditComment(EditCommand[None]):
+class EditComment(EditCommand[None], frozen=True):
     """Set the text of a comment."""
 
     comment: ElementId
@@ -96,8 +89,7 @@ class EditComment(EditCommand[None]):
         return Edited(translate("Edit comment"), None, graph, merge=self.merge)
 
 
-@dataclass(frozen=True)
-class ResizeComment(EditCommand[None]):
+class ResizeComment(EditCommand[None], frozen=True):
     """Set the position and the width of a comment; its height follows from its text."""
 
     comment: ElementId
@@ -113,8 +105,7 @@ class ResizeComment(EditCommand[None]):
         return Edited(translate("Resize comment"), None, graph, merge=self.merge)
 
 
-@dataclass(frozen=True)
-class AddDot(EditCommand[ElementId]):
+class AddDot(EditCommand[ElementId], frozen=True):
     """Add a dot on the link to `target`; returns its id."""
 
     target: Port
@@ -125,8 +116,7 @@ class AddDot(EditCommand[ElementId]):
         return Edited(translate("Add dot"), dot, graph, (dot,))
 
 
-@dataclass(frozen=True)
-class JoinDot(EditCommand[None]):
+class JoinDot(EditCommand[None], frozen=True):
     """Route the link to `target` through a dot of another link from the same source."""
 
     dot: ElementId
@@ -136,8 +126,7 @@ class JoinDot(EditCommand[None]):
         return Edited(translate("Join dot"), None, routes.join_dot(document.graph, self.dot, self.target))
 
 
-@dataclass(frozen=True)
-class RemoveDot(EditCommand[None]):
+class RemoveDot(EditCommand[None], frozen=True):
     """Remove a dot; its links go on."""
 
     dot: ElementId

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from halation.nodes import Kind, Missing, Plain
@@ -24,8 +24,7 @@ class Keep:
 KEEP = Keep()
 
 
-@dataclass(frozen=True)
-class AddInput(EditCommand[ElementId]):
+class AddInput(EditCommand[ElementId], frozen=True):
     """Add an input of the graph, selected; gives its id. `width` counts the channels of a Vector."""
 
     name: str
@@ -38,8 +37,7 @@ class AddInput(EditCommand[ElementId]):
         return _add_end(graph, ElementId.of("input", self.name), self.at)
 
 
-@dataclass(frozen=True)
-class AddOutput(EditCommand[ElementId]):
+class AddOutput(EditCommand[ElementId], frozen=True):
     """Add an output of the graph, selected; gives its id. `width` counts the channels of a Vector."""
 
     name: str
@@ -52,8 +50,7 @@ class AddOutput(EditCommand[ElementId]):
         return _add_end(graph, ElementId.of("output", self.name), self.at)
 
 
-@dataclass(frozen=True)
-class RemoveEnd(EditCommand[None]):
+class RemoveEnd(EditCommand[None], frozen=True):
     """Remove an input or output and its links."""
 
     end: ElementId
@@ -64,8 +61,7 @@ class RemoveEnd(EditCommand[None]):
         return Edited(translate("Remove {end}", end=self.end), None, remove(port.socket))
 
 
-@dataclass(frozen=True)
-class RenameEnd(EditCommand[None]):
+class RenameEnd(EditCommand[None], frozen=True):
     """Give an input or output another name; links and files bound to it follow."""
 
     end: ElementId
@@ -82,8 +78,7 @@ class RenameEnd(EditCommand[None]):
         return Edited(label, None, graph, selection, moves={port: new_port}, renamed=(self.end, new_end))
 
 
-@dataclass(frozen=True)
-class SetInput(EditCommand[None]):
+class SetInput(EditCommand[None], frozen=True):
     """Change an input; what is not given stays. A default of None means that there is none."""
 
     name: str
@@ -110,8 +105,7 @@ class SetInput(EditCommand[None]):
         return Edited(translate("Set inputs.{name}", name=self.name), None, graph, merge=self.merge)
 
 
-@dataclass(frozen=True)
-class SetOutput(EditCommand[None]):
+class SetOutput(EditCommand[None], frozen=True):
     """Change how an output is saved and shown; what is not given stays."""
 
     name: str

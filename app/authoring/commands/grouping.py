@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from ...errors import GraphError
@@ -14,8 +14,7 @@ from ..state.open_document import OpenDocument
 from .command import EditCommand, Edited
 
 
-@dataclass(frozen=True)
-class MakeGroup(EditCommand[str]):
+class MakeGroup(EditCommand[str], frozen=True):
     """Turn the selection into a group; gives its id. Raises GraphError if it would feed itself."""
 
     name: str = ""
@@ -30,8 +29,7 @@ class MakeGroup(EditCommand[str]):
         )
 
 
-@dataclass(frozen=True)
-class Ungroup(EditCommand[None]):
+class Ungroup(EditCommand[None], frozen=True):
     """Put what is in a group in its place."""
 
     id: str
@@ -41,8 +39,7 @@ class Ungroup(EditCommand[None]):
         return Edited(translate("Ungroup {id}", id=self.id), None, graph, keys)
 
 
-@dataclass(frozen=True)
-class MakeGroupLocal(EditCommand[None]):
+class MakeGroupLocal(EditCommand[None], frozen=True):
     """Make the body of a group that comes from a file part of this document."""
 
     id: str
@@ -55,8 +52,7 @@ class MakeGroupLocal(EditCommand[None]):
         return Edited(translate("Make {id} local", id=self.id), None, _with_group(document.graph, self.id, local))
 
 
-@dataclass(frozen=True)
-class LinkGroup(EditCommand[None]):
+class LinkGroup(EditCommand[None], frozen=True):
     """Let a group come from a file, which holds `body`."""
 
     id: str

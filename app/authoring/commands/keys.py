@@ -7,7 +7,6 @@ group; then it cannot be animated inside too.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 
 from halation.nodes import Scalar
 
@@ -21,8 +20,7 @@ from ..state.open_document import OpenDocument
 from .command import EditCommand, Edited
 
 
-@dataclass(frozen=True)
-class SetKey(EditCommand[None]):
+class SetKey(EditCommand[None], frozen=True):
     """Set a key at the current frame, with the current value unless another one is given."""
 
     port: Port
@@ -48,8 +46,7 @@ class SetKey(EditCommand[None]):
         )
 
 
-@dataclass(frozen=True)
-class RemoveKey(EditCommand[None]):
+class RemoveKey(EditCommand[None], frozen=True):
     """Remove the key at the current frame. After the last one the value stays as it is."""
 
     port: Port
@@ -62,8 +59,7 @@ class RemoveKey(EditCommand[None]):
         return Edited(translate("Remove a key of {port}", port=self.port), None, graph)
 
 
-@dataclass(frozen=True)
-class ToggleKey(EditCommand[None]):
+class ToggleKey(EditCommand[None], frozen=True):
     """Set or remove the key at the current frame."""
 
     port: Port
@@ -73,8 +69,7 @@ class ToggleKey(EditCommand[None]):
         return command.apply(document)
 
 
-@dataclass(frozen=True)
-class AnimateValue(EditCommand[None]):
+class AnimateValue(EditCommand[None], frozen=True):
     """Animate a value; without an animation it keeps its number at the current frame."""
 
     port: Port
@@ -86,8 +81,7 @@ class AnimateValue(EditCommand[None]):
         return AnimateValues({self.port: self.animation}, self.label, self.merge).apply(document)
 
 
-@dataclass(frozen=True)
-class AnimateValues(EditCommand[None]):
+class AnimateValues(EditCommand[None], frozen=True):
     """Animate several values, as one step."""
 
     animations: Mapping[Port, Animation | None]
@@ -101,8 +95,7 @@ class AnimateValues(EditCommand[None]):
         return Edited(self.label, None, graph, merge=self.merge)
 
 
-@dataclass(frozen=True)
-class SetExpression(EditCommand[None]):
+class SetExpression(EditCommand[None], frozen=True):
     """Drive a value by an expression; a leading `=` is ignored. Without text the value keeps its current number."""
 
     port: Port
@@ -118,8 +111,7 @@ class SetExpression(EditCommand[None]):
         return Edited(translate("Expression of {port}", port=self.port), None, graph, merge=self.merge)
 
 
-@dataclass(frozen=True)
-class BakeKeys(EditCommand[None]):
+class BakeKeys(EditCommand[None], frozen=True):
     """Set a key with the current result of the value at each of these frames, by default at all frames of the range."""
 
     port: Port

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from ...language.translation import translate
 from ..edits import align, arranging, elements, naming
@@ -14,8 +13,7 @@ from ..state.open_document import OpenDocument
 from .command import EditCommand, Edited
 
 
-@dataclass(frozen=True)
-class MoveElements(EditCommand[None]):
+class MoveElements(EditCommand[None], frozen=True):
     """Move elements by a distance."""
 
     elements: Iterable[ElementId]
@@ -32,8 +30,7 @@ class MoveElements(EditCommand[None]):
         )
 
 
-@dataclass(frozen=True)
-class PlaceElement(EditCommand[None]):
+class PlaceElement(EditCommand[None], frozen=True):
     """Put an element somewhere."""
 
     element: ElementId
@@ -47,8 +44,7 @@ class PlaceElement(EditCommand[None]):
         return Edited(translate("Move {element}", element=self.element), None, graph, merge=self.merge)
 
 
-@dataclass(frozen=True)
-class AlignSelection(EditCommand[None]):
+class AlignSelection(EditCommand[None], frozen=True):
     """Line up the selection: `left`, `right`, `top`, `bottom`, `center x`, `center y`, or `distribute x` or `y`."""
 
     side: str
@@ -64,8 +60,7 @@ class AlignSelection(EditCommand[None]):
         )
 
 
-@dataclass(frozen=True)
-class ArrangeElements(EditCommand[None]):
+class ArrangeElements(EditCommand[None], frozen=True):
     """Lay out the selection, or everything if less than two nodes are selected."""
 
     sizes: Sizes | None = None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
 
 from ...errors import GraphError
 from ...graph import Port
@@ -16,8 +15,7 @@ from .adding import make_node
 from .command import EditCommand, Edited, count_links, require_nodes, require_selection
 
 
-@dataclass(frozen=True)
-class Connect(EditCommand[None]):
+class Connect(EditCommand[None], frozen=True):
     """Link `source` to `target`, which replaces its link."""
 
     source: Port
@@ -28,8 +26,7 @@ class Connect(EditCommand[None]):
         return Edited(translate("Link {source} to {target}", source=self.source, target=self.target), None, graph)
 
 
-@dataclass(frozen=True)
-class ConnectNodes(EditCommand[None]):
+class ConnectNodes(EditCommand[None], frozen=True):
     """Link `source` to `target`, and all free sockets of the two nodes that have the same name and fit."""
 
     source: Port
@@ -41,8 +38,7 @@ class ConnectNodes(EditCommand[None]):
         return Edited(translate("Link {source} to {target}", source=self.source, target=self.target), None, graph)
 
 
-@dataclass(frozen=True)
-class Disconnect(EditCommand[None]):
+class Disconnect(EditCommand[None], frozen=True):
     """Remove the link to `target`."""
 
     target: Port
@@ -51,8 +47,7 @@ class Disconnect(EditCommand[None]):
         return Edited(translate("Unlink {target}", target=self.target), None, document.graph.disconnect(self.target))
 
 
-@dataclass(frozen=True)
-class DisconnectAll(EditCommand[None]):
+class DisconnectAll(EditCommand[None], frozen=True):
     """Remove every link of a node or end."""
 
     element: ElementId
@@ -68,8 +63,7 @@ class DisconnectAll(EditCommand[None]):
         )
 
 
-@dataclass(frozen=True)
-class CutLinks(EditCommand[None]):
+class CutLinks(EditCommand[None], frozen=True):
     """Remove the links to `targets`."""
 
     targets: Collection[Port]
@@ -82,8 +76,7 @@ class CutLinks(EditCommand[None]):
         )
 
 
-@dataclass(frozen=True)
-class MoveLink(EditCommand[None]):
+class MoveLink(EditCommand[None], frozen=True):
     """Move a link from one socket to another."""
 
     old_target: Port
@@ -94,8 +87,7 @@ class MoveLink(EditCommand[None]):
         return Edited(translate("Move link to {new_target}", new_target=self.new_target), None, graph)
 
 
-@dataclass(frozen=True)
-class SwapInputs(EditCommand[None]):
+class SwapInputs(EditCommand[None], frozen=True):
     """Swap the links of the first two inputs of a node."""
 
     id: str
@@ -104,8 +96,7 @@ class SwapInputs(EditCommand[None]):
         return Edited(translate("Swap inputs of {id}", id=self.id), None, wiring.swap_inputs(document.graph, self.id))
 
 
-@dataclass(frozen=True)
-class DeleteSelection(EditCommand[None]):
+class DeleteSelection(EditCommand[None], frozen=True):
     """Delete the selection; with `heal`, the nodes before and after it are linked where that fits."""
 
     heal: bool = True
@@ -116,8 +107,7 @@ class DeleteSelection(EditCommand[None]):
         return Edited(translate("Delete {elements}", elements=naming.describe_elements(doomed)), None, graph, ())
 
 
-@dataclass(frozen=True)
-class ExtractSelection(EditCommand[None]):
+class ExtractSelection(EditCommand[None], frozen=True):
     """Take the selected nodes out of their chains; the links there are healed."""
 
     merge: str = ""
@@ -134,8 +124,7 @@ class ExtractSelection(EditCommand[None]):
         )
 
 
-@dataclass(frozen=True)
-class ReplaceNode(EditCommand[None]):
+class ReplaceNode(EditCommand[None], frozen=True):
     """Give a node another type; links and values stay where they fit."""
 
     id: str
@@ -147,8 +136,7 @@ class ReplaceNode(EditCommand[None]):
         return Edited(translate("Replace {id} by {type_id}", id=self.id, type_id=self.type_id), None, graph)
 
 
-@dataclass(frozen=True)
-class RenameNode(EditCommand[None]):
+class RenameNode(EditCommand[None], frozen=True):
     """Rename a node; links, keys and expressions follow."""
 
     id: str
@@ -162,8 +150,7 @@ class RenameNode(EditCommand[None]):
         return Edited(translate("Rename {old} to {new}", old=old, new=new), None, graph, selection, renamed=(old, new))
 
 
-@dataclass(frozen=True)
-class ToggleMute(EditCommand[None]):
+class ToggleMute(EditCommand[None], frozen=True):
     """Mute the selected nodes; if all are muted already, let them work again."""
 
     def apply(self, document: OpenDocument) -> Edited[None]:
@@ -179,8 +166,7 @@ class ToggleMute(EditCommand[None]):
         return Edited(label, None, graph)
 
 
-@dataclass(frozen=True)
-class ToggleCollapse(EditCommand[None]):
+class ToggleCollapse(EditCommand[None], frozen=True):
     """Fold the selected nodes to their title; if all are folded, unfold them."""
 
     def apply(self, document: OpenDocument) -> Edited[None]:

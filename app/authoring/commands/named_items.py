@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 
 from halation.nodes import NamedItem
+from msgspec import field
 
 from ...errors import GraphError
 from ...graph import Port
@@ -26,8 +26,7 @@ from ..state.open_document import OpenDocument
 from .command import EditCommand, Edited
 
 
-@dataclass(frozen=True)
-class AddItem(EditCommand[str]):
+class AddItem(EditCommand[str], frozen=True):
     """Add a named item of a kind to a value; gives its name, by default the kind and a number."""
 
     port: Port
@@ -59,8 +58,7 @@ class AddItem(EditCommand[str]):
         return Edited(translate("Add {noun} {name}", noun=declared.noun, name=name), name, graph, merge=self.merge)
 
 
-@dataclass(frozen=True)
-class DuplicateItem(EditCommand[str]):
+class DuplicateItem(EditCommand[str], frozen=True):
     """Add a copy of a named item, with its keys; gives its name."""
 
     port: Port
@@ -74,8 +72,7 @@ class DuplicateItem(EditCommand[str]):
         return Edited(translate("Duplicate {noun} {name}", noun=declared.noun, name=self.name), copy, graph)
 
 
-@dataclass(frozen=True)
-class RemoveItem(EditCommand[None]):
+class RemoveItem(EditCommand[None], frozen=True):
     """Remove a named item, its keys and the controls of its fields."""
 
     port: Port
@@ -87,8 +84,7 @@ class RemoveItem(EditCommand[None]):
         return Edited(translate("Remove {noun} {name}", noun=declared.noun, name=self.name), None, graph)
 
 
-@dataclass(frozen=True)
-class RenameItem(EditCommand[None]):
+class RenameItem(EditCommand[None], frozen=True):
     """Give a named item another name; keys, expressions and controls follow."""
 
     port: Port
@@ -100,8 +96,7 @@ class RenameItem(EditCommand[None]):
         return Edited(translate("Rename {old} to {new}", old=self.old, new=self.new), None, graph)
 
 
-@dataclass(frozen=True)
-class ExchangeItems(EditCommand[None]):
+class ExchangeItems(EditCommand[None], frozen=True):
     """Give two named items each other's name, and so each other's place in the order; keys and controls follow."""
 
     port: Port

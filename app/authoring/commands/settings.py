@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from halation.nodes import MAX_REFERENCE_HEIGHT, ColorSettings, Size
 
@@ -18,8 +18,7 @@ _LEAST_RATE, _LARGEST_RATE = 0.01, 1000.0
 """Frames per second: from one in 100 seconds to those of cameras for slow motion. Chosen by judgement."""
 
 
-@dataclass(frozen=True)
-class SetFrameRange(EditCommand[None]):
+class SetFrameRange(EditCommand[None], frozen=True):
     """State the first and last frame of the document; None leaves the range to what the graph reads."""
 
     first: int | None
@@ -39,8 +38,7 @@ class SetFrameRange(EditCommand[None]):
         return _set(document, translate("Set frames"), replace(document.root.settings, frames=frames), self.merge)
 
 
-@dataclass(frozen=True)
-class SetFrameRate(EditCommand[None]):
+class SetFrameRate(EditCommand[None], frozen=True):
     """Set the frames per second."""
 
     rate: float
@@ -58,8 +56,7 @@ class SetFrameRate(EditCommand[None]):
         return _set(document, translate("Set rate"), replace(document.root.settings, rate=float(self.rate)), self.merge)
 
 
-@dataclass(frozen=True)
-class SetPreroll(EditCommand[None]):
+class SetPreroll(EditCommand[None], frozen=True):
     """Set how many earlier frames temporal nodes process; None: from the first frame on."""
 
     preroll: int | None
@@ -73,8 +70,7 @@ class SetPreroll(EditCommand[None]):
         )
 
 
-@dataclass(frozen=True, kw_only=True)
-class SetColorSettings(EditCommand[None]):
+class SetColorSettings(EditCommand[None], frozen=True, kw_only=True):
     """Set where color spaces come from, or the one to work in; what is not given stays."""
 
     config: str | None = None
@@ -89,8 +85,7 @@ class SetColorSettings(EditCommand[None]):
         return _set(document, translate("Set color"), settings, self.merge)
 
 
-@dataclass(frozen=True)
-class SetReferenceHeight(EditCommand[None]):
+class SetReferenceHeight(EditCommand[None], frozen=True):
     """Set the height at which numbers of lengths are pixels; None for pixels of the picture."""
 
     height: int | None
@@ -109,8 +104,7 @@ class SetReferenceHeight(EditCommand[None]):
         )
 
 
-@dataclass(frozen=True)
-class SetOverscan(EditCommand[None]):
+class SetOverscan(EditCommand[None], frozen=True):
     """Set how far beyond their frame pictures are kept, in heights of the frame; 0 for not at all."""
 
     overscan: float
@@ -130,8 +124,7 @@ class SetOverscan(EditCommand[None]):
         )
 
 
-@dataclass(frozen=True)
-class SetCanvasSize(EditCommand[None]):
+class SetCanvasSize(EditCommand[None], frozen=True):
     """Set the size of generated pictures, in pixels; None for the size of the first picture."""
 
     size: Size | None

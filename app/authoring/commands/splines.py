@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from operator import add
 from typing import cast
 
@@ -19,8 +18,7 @@ SplineEdit = Callable[[tuple[Row, ...]], Iterable[Row]]
 """What an edit makes of the points of a spline."""
 
 
-@dataclass(frozen=True)
-class MovePoints(EditCommand[None]):
+class MovePoints(EditCommand[None], frozen=True):
     """Set the points of a spline, or, where they have keys, a key at the current frame.
 
     With `ripples` all keys follow: what is added at this frame is added to each of them.
@@ -48,8 +46,7 @@ class MovePoints(EditCommand[None]):
         return ChangePoints(self.port, shift, self.label, self.merge).apply(document)
 
 
-@dataclass(frozen=True)
-class ChangePoints(EditCommand[None]):
+class ChangePoints(EditCommand[None], frozen=True):
     """Change the points of a spline in the same way in all of its keys, or where it has none."""
 
     port: Port

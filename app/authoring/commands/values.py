@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from halation.nodes import Plain
 from msgspec import structs
@@ -20,8 +20,7 @@ from .command import EditCommand, Edited
 from .keys import add_key
 
 
-@dataclass(frozen=True)
-class SetValue(EditCommand[None]):
+class SetValue(EditCommand[None], frozen=True):
     """Set a value, or, where it has keys, a key at the current frame."""
 
     port: Port
@@ -39,8 +38,7 @@ class SetValue(EditCommand[None]):
         )
 
 
-@dataclass(frozen=True)
-class SetValues(EditCommand[None]):
+class SetValues(EditCommand[None], frozen=True):
     """Set several values as one step."""
 
     values: Mapping[Port, object]
@@ -56,8 +54,7 @@ class SetValues(EditCommand[None]):
         return Edited(self.label, None, graph, merge=self.merge)
 
 
-@dataclass(frozen=True)
-class OverrideValues(EditCommand[None]):
+class OverrideValues(EditCommand[None], frozen=True):
     """Set values of the whole document by their paths, inside of groups too, as one step."""
 
     settings: Mapping[str, Plain]
@@ -71,8 +68,7 @@ class OverrideValues(EditCommand[None]):
         return Edited(self.label, None, root=root, merge=self.merge)
 
 
-@dataclass(frozen=True)
-class ConvertLength(EditCommand[None]):
+class ConvertLength(EditCommand[None], frozen=True):
     """Give a length in another unit, so that a picture of a height stays as it is."""
 
     ports: tuple[Port, ...]
@@ -86,8 +82,7 @@ class ConvertLength(EditCommand[None]):
         return Edited(translate("Set unit to {unit}", unit=self.unit), None, graph)
 
 
-@dataclass(frozen=True)
-class ResetValue(EditCommand[None]):
+class ResetValue(EditCommand[None], frozen=True):
     """Set a value back to its default, for all frames."""
 
     port: Port
@@ -96,8 +91,7 @@ class ResetValue(EditCommand[None]):
         return Edited(translate("Reset {port}", port=self.port), None, reset_value(document.graph, self.port))
 
 
-@dataclass(frozen=True)
-class ResetNode(EditCommand[None]):
+class ResetNode(EditCommand[None], frozen=True):
     """Set all values of a node back to their defaults."""
 
     id: str
@@ -109,8 +103,7 @@ class ResetNode(EditCommand[None]):
         return Edited(translate("Reset {id}", id=self.id), None, graph)
 
 
-@dataclass(frozen=True)
-class ExposeValue(EditCommand[str]):
+class ExposeValue(EditCommand[str], frozen=True):
     """Show a value as a control of the graph; gives its name, by default that of the value."""
 
     port: Port
@@ -128,8 +121,7 @@ class ExposeValue(EditCommand[str]):
         )
 
 
-@dataclass(frozen=True)
-class HideControl(EditCommand[None]):
+class HideControl(EditCommand[None], frozen=True):
     """Remove a control; the value stays as it is."""
 
     name: str
@@ -138,8 +130,7 @@ class HideControl(EditCommand[None]):
         return Edited(translate("Hide {name}", name=self.name), None, document.graph.remove_control(self.name))
 
 
-@dataclass(frozen=True)
-class RenameControl(EditCommand[None]):
+class RenameControl(EditCommand[None], frozen=True):
     """Give a control another name."""
 
     old: str
@@ -151,8 +142,7 @@ class RenameControl(EditCommand[None]):
         return Edited(translate("Rename {old} to {new}", old=self.old, new=self.new), None, graph, moves=moves)
 
 
-@dataclass(frozen=True)
-class DescribeControl(EditCommand[None]):
+class DescribeControl(EditCommand[None], frozen=True):
     """Set the label or the tooltip of a control; None leaves it."""
 
     name: str

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 
 from ...errors import GraphError
 from ...graph import Graph, Port
@@ -15,8 +14,7 @@ from ..state.open_document import OpenDocument
 from .command import EditCommand, Edited
 
 
-@dataclass(frozen=True)
-class AssignViewer(EditCommand[None]):
+class AssignViewer(EditCommand[None], frozen=True):
     """Let a key from 1 to 9 show a port: the one given, else the active element's, else the one shown on side A."""
 
     number: int
@@ -39,8 +37,7 @@ class AssignViewer(EditCommand[None]):
         )
 
 
-@dataclass(frozen=True)
-class ReplaceGraph(EditCommand[None]):
+class ReplaceGraph(EditCommand[None], frozen=True):
     """Put a graph that a panel computed in the place of the one that the user sees, as one step."""
 
     label: str
@@ -52,8 +49,7 @@ class ReplaceGraph(EditCommand[None]):
         return Edited(self.label, None, self.graph, self.select, self.merge)
 
 
-@dataclass(frozen=True)
-class ReplaceDocument(EditCommand[None]):
+class ReplaceDocument(EditCommand[None], frozen=True):
     """Put another document in the place of this one, as one step: what was read again from its file."""
 
     label: str

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 from halation.nodes import Kind, Socket, Value
+from msgspec import Struct, field
 
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Control, Graph, Group, Input, Output, Port, Settings
@@ -83,8 +84,7 @@ def group_corner(graph: Graph, ids: Iterable[str], spots: Places) -> Place:
     return round((left + right - WIDTH) / 2.0, 2), round((top + bottom) / 2.0 - GAP[1], 2)
 
 
-@dataclass
-class _Crossing:
+class _Crossing(Struct):
     """The ends of a group: names by what crosses its border."""
 
     inputs: dict[str, Input] = field(default_factory=dict[str, Input])

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import NamedTuple
+
+from msgspec import Struct, field
 
 
 class Tie(NamedTuple):
@@ -24,8 +25,7 @@ class Side(NamedTuple):
     here: float
 
 
-@dataclass
-class BoxLayers:
+class BoxLayers(Struct):
     """Boxes in layers. A link over several layers passes a virtual box of no height in each between.
 
     Links that start at the same place share these boxes, so that they are drawn as one line until they part.

@@ -6,8 +6,9 @@ After Sugiyama, Tagawa and Toda (1981), "Methods for visual understanding of hie
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
+
+from msgspec import Struct
 
 from .layering import BoxLayers, Tie, layer_numbers, make_layers
 from .straightening import find_tops
@@ -19,8 +20,7 @@ GAP = 80.0, 40.0
 Spot = tuple[float, float]
 
 
-@dataclass(frozen=True)
-class Drawing:
+class Drawing(Struct, frozen=True):
     """Where boxes and links lie; the whole drawing starts at 0,0."""
 
     places: dict[str, Spot]

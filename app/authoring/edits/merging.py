@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from halation.nodes import Node
+from msgspec import Struct, structs
 
 from ...graph import INPUTS, OUTPUTS, Graph, Port
 from ...graph.notes import keys_of_nodes
@@ -17,8 +18,7 @@ from .naming import name_copy
 from .routes import routes, with_routes
 
 
-@dataclass(frozen=True)
-class MergedPart:
+class MergedPart(Struct, frozen=True):
     """`graph` has everything; `names` has the new ids of the nodes and decor of the part."""
 
     graph: Graph
@@ -79,7 +79,7 @@ def merge_part(graph: Graph, part: Graph, places: Places) -> MergedPart:
         for target, dots in routes(part).items()
         if target in ends
     }
-    return replace(merged_part, graph=with_routes(merged_part.graph, new_routes)) if new_routes else merged_part
+    return structs.replace(merged_part, graph=with_routes(merged_part.graph, new_routes)) if new_routes else merged_part
 
 
 def rename_dots(merged_part: MergedPart, dots: tuple[str, ...]) -> tuple[str, ...]:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from halation.nodes import ColorSettings
+from msgspec import Struct
 
 from ...color.management import BUILT_IN, ColorManager, get_color_manager
 from ...errors import HalationError
@@ -13,8 +12,7 @@ from ...resources.sandbox import Sandbox
 _BUILT_IN = ColorSettings(BUILT_IN)
 
 
-@dataclass
-class ColorFallback:
+class ColorFallback(Struct):
     """Caches the last result: an unreadable config is not tried again before it changes."""
 
     sandbox: Sandbox

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Container, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 
 from halation.nodes import Kind, Size
+from msgspec import Struct
 
 from ...compiler import Plan, scale_size
 from ...errors import InputError
@@ -19,8 +19,7 @@ from .request import PreviewRequest, pixel_kind
 from .visible_region import PictureRegion
 
 
-@dataclass(frozen=True)
-class DisplayedImage:
+class DisplayedImage(Struct, frozen=True):
     """A finished picture: it stays as it is until another takes its place.
 
     `texture` is scene-linear. It may be a part of the picture, from pixel `start` on, or go on beyond the frame on all
@@ -71,8 +70,7 @@ class DisplayedImage:
         return width * height / (self.size[0] * self.size[1])
 
 
-@dataclass(eq=False)
-class _LeasedImage:
+class _LeasedImage(Struct, eq=False):
     """The picture of a panel, and the lease that keeps its texture on the device."""
 
     image: DisplayedImage

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from halation.nodes import Size
+from msgspec import Struct
 
 from ...compiler import Surface
 from ...graph import Port
@@ -23,8 +23,7 @@ MOST_FRAMES = 5000
 """The most frames that are remembered, whatever their size: more than three minutes at 24 per second. A choice."""
 
 
-@dataclass(frozen=True)
-class FrameImage:
+class FrameImage(Struct, frozen=True):
     """The picture of one frame in one panel."""
 
     surface: Surface

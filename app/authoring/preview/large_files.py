@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from halation.nodes import Size
+from msgspec import Struct
 
 from ...errors import HalationError
 from ...graph import Graph
@@ -26,8 +26,7 @@ COARSEST = 0.125
 """The coarsest scale: that of the coarsest proxy of the viewer."""
 
 
-@dataclass
-class LargeFiles:
+class LargeFiles(Struct):
     """The size of the largest picture file that a graph reads, looked up again when the graph has changed."""
 
     size: Size = (0, 0)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Set
-from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from halation.nodes import CameraModel, Size
+from msgspec.structs import replace
 
 from ...compiler import Library, Plan
 from ...errors import HalationError, NoFileError

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Set
-from dataclasses import dataclass, field, replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 from halation.nodes import Kind, Size
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from ...compiler import Region, UpstreamHashes
 from ...errors import GraphError
@@ -20,8 +21,7 @@ if TYPE_CHECKING:
     from ...inputs.provider import Binding
 
 
-@dataclass(eq=False)
-class PreviewRequest:
+class PreviewRequest(Struct, eq=False):
     """Ports of a graph that panels want to show, by the panels' names. `world` counts changes outside of the graph."""
 
     graph: Graph

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
 from halation.nodes import ColorSettings, Kind
+from msgspec import Struct
 
 from ...color.management import get_default_color_manager
 from ...compiler import Plan, scale_size
@@ -20,8 +20,7 @@ RANGE_WIDTH = 64
 """The width of the picture on which the range of a field is measured: small enough to read it back every time."""
 
 
-@dataclass(frozen=True)
-class ThumbnailSource:
+class ThumbnailSource(Struct, frozen=True):
     """The result that a thumbnail shows. `mark` changes when anything upstream of the node changes."""
 
     path: str
@@ -34,8 +33,7 @@ class ThumbnailSource:
     """The pixel of the frame with which the texture begins: below 0 if it goes on beyond the frame."""
 
 
-@dataclass(frozen=True)
-class _DisplaySource:
+class _DisplaySource(Struct, frozen=True):
     """The picture and its meaning, as the display takes them."""
 
     texture: DeviceTexture
@@ -49,8 +47,7 @@ class _DisplaySource:
         return self.full_size
 
 
-@dataclass(frozen=True)
-class _Thumbnail:
+class _Thumbnail(Struct, frozen=True):
     texture: DeviceTexture
     key: str
     mark: object

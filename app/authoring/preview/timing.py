@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 from ...compiler import Pass, Plan
 
@@ -11,8 +12,7 @@ MOST_SECONDS = 4096
 """The most passes whose times are remembered. A choice."""
 
 
-@dataclass(frozen=True)
-class NodeTiming:
+class NodeTiming(Struct, frozen=True):
     """The seconds of a node's passes and the bytes that they wrote. A pass of several nodes counts for each."""
 
     seconds: float

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from halation.nodes import Node
+from msgspec.structs import replace
 
 from ...errors import HalationError
 from ...graph import OUTPUTS, Graph, Port

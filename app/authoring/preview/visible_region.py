@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from halation.nodes import Size
+from msgspec import Struct
 
 from ...compiler import Region, scale_size
 from ...graph import Port
@@ -30,8 +30,7 @@ SMALL = 2**18
 """Pixels (512 x 512) below which the whole picture is computed at once: it is fast enough."""
 
 
-@dataclass(frozen=True)
-class VisibleRegion:
+class VisibleRegion(Struct, frozen=True):
     """The box that panels of these `names` show of pictures that are of the size `picture` at scale 1."""
 
     box: Box
@@ -55,8 +54,7 @@ class VisibleRegion:
         return region.width * region.height / (size[0] * size[1]) if region else 1.0
 
 
-@dataclass(frozen=True)
-class PictureRegion:
+class PictureRegion(Struct, frozen=True):
     """A region of pictures of `size` pixels."""
 
     region: Region

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+
+from msgspec import Struct, field
 
 from ...errors import HalationError
 from ...graph import Port
@@ -17,8 +18,7 @@ REST = 0.2
 """Seconds without a change before the rest of a picture follows its visible part: a choice."""
 
 
-@dataclass(eq=False)
-class PreviewWork:
+class PreviewWork(Struct, eq=False):
     """The queue of pictures that are still to be compiled, and the errors so far."""
 
     request: PreviewRequest

@@ -12,11 +12,11 @@ import secrets
 import threading
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from importlib import metadata
 from pathlib import Path
 
 import msgspec
+from msgspec import Struct
 
 from ... import document
 from ...document.disk import read_text
@@ -50,8 +50,7 @@ class _Record(msgspec.Struct):
     nodes: int = 0
 
 
-@dataclass(frozen=True)
-class RecoveredWork:
+class RecoveredWork(Struct, frozen=True):
     """Work that an editor left behind at `time`, in seconds since 1970.
 
     `path` is the file that it belongs to, None if it was never saved; `nodes` counts those outside of groups.
@@ -63,7 +62,7 @@ class RecoveredWork:
     time: float = 0.0
     version: str = ""
     nodes: int = 0
-    text: str = field(default="", repr=False)
+    text: str = ""
     fault: str = ""
     """Why it cannot be read, or ""."""
 

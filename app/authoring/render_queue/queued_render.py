@@ -11,9 +11,10 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
+
+from msgspec import Struct
 
 from ...graph import Graph
 from ...language.translation import translate
@@ -35,8 +36,7 @@ _MIN_DONE_FOR_ESTIMATE = 0.3
 """The fraction of the first frame that must be done before the remaining time is shown: earlier estimates jump."""
 
 
-@dataclass(frozen=True)
-class QueuedJob:
+class QueuedJob(Struct, frozen=True):
     """The job that is sent to the process, and its graph; kept to start it again.
 
     `cluster` is the address of the workers that render, "" for this machine alone.

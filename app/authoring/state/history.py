@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from ...graph import Graph
 from ..edits.element_id import NO_ELEMENT, ElementId
@@ -12,8 +14,7 @@ MOST = 1000
 """Steps that are kept at most; older ones are dropped. Graphs share their unchanged parts, so a step is small."""
 
 
-@dataclass(frozen=True)
-class Snapshot:
+class Snapshot(Struct, frozen=True):
     """The state that a step restores: the document, the groups entered, and the selection."""
 
     root: Graph
@@ -22,8 +23,7 @@ class Snapshot:
     active: ElementId = NO_ELEMENT
 
 
-@dataclass(frozen=True)
-class HistoryStep:
+class HistoryStep(Struct, frozen=True):
     """One undo step. Further changes with the same `merge` become part of it."""
 
     label: str
@@ -32,8 +32,7 @@ class HistoryStep:
     merge: str = ""
 
 
-@dataclass
-class History:
+class History(Struct):
     """Steps, oldest first; the first `position` of them are done, the others undone."""
 
     _steps: list[HistoryStep] = field(default_factory=list[HistoryStep])

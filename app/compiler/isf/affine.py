@@ -7,11 +7,10 @@ The package says why. Numbers are fitted by straight lines (`fit_slopes`), sizes
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
 from typing import Any, cast
 
 from halation.nodes import Size
-from msgspec import Struct
+from msgspec import Struct, field
 
 from ...resources.record import Record
 from ..areas import Neighborhood
@@ -38,8 +37,7 @@ MAX_FACTOR = 4096
 pixel for 4096 pixels."""
 
 
-@dataclass(frozen=True)
-class FittedKnob:
+class FittedKnob(Struct, frozen=True):
     """A number that the graph depends on. `text` is its GLSL in the shader, `rest` its value in the graph.
 
     Samples are taken at `base` and in steps of `step` from it. `base` lies beside `rest`: at its value in the graph a
@@ -61,8 +59,7 @@ class FittedKnob:
         return self.base + self.step * (1.0 if self.samples == 1 else _FAR_STEPS)
 
 
-@dataclass
-class Anatomy:
+class Anatomy(Struct):
     """A program taken apart: its structure, its numbers, its sizes, and where the numbers of each constant begin.
 
     Constants are known by their `id`, so the program is kept.
@@ -102,8 +99,7 @@ def _walk(item: Any, parts: Anatomy) -> object:
     return item
 
 
-@dataclass
-class LinearModel:
+class LinearModel(Struct):
     """Every number as base + sum of slopes + sum of products of two knobs."""
 
     base: Anatomy

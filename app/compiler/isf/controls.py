@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import Any
 
 from halation.nodes import Value
+from msgspec import Struct
 
 from ...custom_nodes.isf.inputs import encode_light
 from ...graph import Graph
@@ -18,8 +18,7 @@ _ODD = re.compile(r"[^A-Za-z0-9]+")
 Section = dict[str, Any]
 
 
-@dataclass(frozen=True)
-class IsfControl:
+class IsfControl(Struct, frozen=True):
     """A control with its entry in the head of the shader, and the knobs that are fitted."""
 
     control: KnobControl

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from halation.nodes import ColorChange, ColorSettings, Kind, Missing, Render, Scene, Size, TextBlock, TypesetText
+from msgspec import Struct
 
 from ...graph import Graph, Port
 from ...resources.color_program import ColorProgram
@@ -42,8 +42,7 @@ SIZE: Size = (1280, 720)
 """The size of the picture where neither the user nor the graph names one."""
 
 
-@dataclass(frozen=True)
-class IsfExport:
+class IsfExport(Struct, frozen=True):
     """The text of a shader and what it cannot do that the graph can; or why there is none: nodes and reasons."""
 
     text: str
@@ -51,8 +50,7 @@ class IsfExport:
     reasons: tuple[tuple[str, str], ...]
 
 
-@dataclass(frozen=True)
-class _BoundProvider:
+class _BoundProvider(Struct, frozen=True):
     """A provider for which the picture of every bound input has the size of the export."""
 
     provider: ResourceProvider

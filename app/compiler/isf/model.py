@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 
 from halation.nodes import Size
+from msgspec import Struct, field
 
 from ...errors import HalationError
 from ..ir import LoweredProgram, UniformConstant
@@ -22,8 +22,7 @@ SizeFormulas = Mapping[Size, tuple[str, str]]
 """Sizes of pictures as formulas of the size of the exported picture, which is written `{}`."""
 
 
-@dataclass
-class IsfModel:
+class IsfModel(Struct):
     """A program with its numbers and sizes as formulas. `held_knobs` are the knobs that it does not follow."""
 
     program: LoweredProgram
@@ -50,8 +49,7 @@ class IsfModel:
         return {name for name in self.model.slopes if _matters(self.model, name)}
 
 
-@dataclass
-class ModelSearch:
+class ModelSearch(Struct):
     """Fits knobs; one that does not fit is held at its value in the graph, and the search starts again without it."""
 
     sampler: GraphSampler[Anatomy]

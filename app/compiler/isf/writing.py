@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 
 from halation.nodes import Size, Uniform
+from msgspec import Struct, field
 
 from ..fusion.fuse import PassGroup, fuse
 from ..ir import Ref
@@ -19,8 +19,7 @@ from .passes import IsfNames, write_function
 _PIXEL = "ivec2(int(gl_FragCoord.x), int(RENDERSIZE.y - gl_FragCoord.y))"
 
 
-@dataclass
-class IsfWriter:
+class IsfWriter(Struct):
     """Writes one shader: the passes so far, and the buffers that they fill."""
 
     model: IsfModel

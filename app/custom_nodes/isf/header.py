@@ -6,9 +6,10 @@ import json
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import PurePosixPath
 from typing import Any, NoReturn, cast
+
+from msgspec import Struct
 
 from ...glsl import unify_lines
 from ..code import CodeFault
@@ -37,8 +38,7 @@ _RESERVED_NAMES = re.compile(
 Section = dict[str, Any]
 
 
-@dataclass(frozen=True)
-class IsfInput:
+class IsfInput(Struct, frozen=True):
     """An input of the shader. Numbers are tuples: of one for a float, two for a point, four for a color."""
 
     name: str
@@ -51,8 +51,7 @@ class IsfInput:
     """The values of a long, with their labels."""
 
 
-@dataclass(frozen=True)
-class Buffer:
+class Buffer(Struct, frozen=True):
     """A buffer that passes draw into and read by name."""
 
     name: str
@@ -62,8 +61,7 @@ class Buffer:
     height: SizeFormula | None = None
 
 
-@dataclass(frozen=True)
-class Header:
+class Header(Struct, frozen=True):
     """What a header declares. `passes` are the buffers they draw into, "" for the picture; there is at least one."""
 
     doc: str
@@ -72,7 +70,7 @@ class Header:
     buffers: Mapping[str, Buffer]
     imported: Mapping[str, str]
     """Files in the folder of the shader, by the names of their samplers."""
-    categories: tuple[str, ...] = field(default=())
+    categories: tuple[str, ...] = ()
 
 
 def read_header(text: str) -> Header:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 from hashlib import blake2b
 from pathlib import PurePath
 from typing import Any
 
 from halation.nodes import Draw, Drawn, Filter, OutputSocket, Scalar, ShaderText, Size, Temporal, Uniform, Value, Vector
+from msgspec import Struct
 
 from ...errors import GraphError
 from ...glsl import parse, words
@@ -52,8 +52,7 @@ vec4 isf_nothing() { return vec4(0.0); }
 """
 
 
-@dataclass(frozen=True)
-class IsfShader:
+class IsfShader(Struct, frozen=True):
     """What a class draws with: its head, its program, and what the program reads, by the head's names."""
 
     header: Header

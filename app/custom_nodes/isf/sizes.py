@@ -6,8 +6,10 @@ import math
 import operator
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from types import MappingProxyType
+from typing import ClassVar
+
+from ...resources.record import Record
 
 MAX_LENGTH = 1000
 MAX_DEPTH = 50
@@ -56,13 +58,14 @@ class SizeError(Exception):
     """A formula cannot be read, or has no value."""
 
 
-@dataclass(frozen=True)
-class SizeFormula:
+class SizeFormula(Record, frozen=True, eq=False):
     """A formula such as `max(floor($WIDTH * 0.25), 1.0)`. `names` are those that it reads, without the `$`."""
 
     text: str
-    names: frozenset[str] = field(compare=False)
-    _run: SizeEvaluator = field(compare=False, repr=False)
+    names: frozenset[str]
+    _run: SizeEvaluator
+
+    compare_exclude: ClassVar[frozenset[str]] = frozenset({"names", "_run"})
 
     def pixels(self, values: Mapping[str, float]) -> int:
         """The length, rounded down, at least 1. Raises SizeError where there is none."""

@@ -13,9 +13,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Container, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
+
+from msgspec import Struct
 
 from ...graph import Animation, Control, Graph, Group, Item, Port
 from ...graph.notes import move_keys
@@ -30,8 +32,7 @@ _ROUNDS = 32
 apart is not worth the time."""
 
 
-@dataclass(frozen=True)
-class NodeRename:
+class NodeRename(Struct, frozen=True):
     """A node with its old and new id; `group` are the ids of the groups that it is in, from the outside."""
 
     group: tuple[str, ...]

@@ -9,8 +9,9 @@ it is resolved.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any, Final, Literal, get_args
+
+from msgspec import Struct
 
 from ...errors import UsageError
 from ...graph import did_you_mean
@@ -20,8 +21,7 @@ Side = Literal["ours", "theirs", "base"]
 SIDES: Final = get_args(Side)
 
 
-@dataclass(frozen=True)
-class Conflict:
+class Conflict(Struct, frozen=True):
     """A part that both sides changed differently; ABSENT where a version has none."""
 
     at: PartPath

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
+
+from msgspec import Struct
 
 from ...graph import Graph, Group
 from .aligning import NodeRename, align_two, rename_all, replace_items
@@ -23,8 +25,7 @@ from .parts import (
 )
 
 
-@dataclass(frozen=True)
-class PartChange:
+class PartChange(Struct, frozen=True):
     """A part of a document before and after; ABSENT where there is none, or a value is at its default."""
 
     at: PartPath
@@ -32,8 +33,7 @@ class PartChange:
     after: Any
 
 
-@dataclass(frozen=True)
-class GraphDifference:
+class GraphDifference(Struct, frozen=True):
     """Which nodes were renamed, and what else changed, under the new names."""
 
     renamed: tuple[NodeRename, ...] = ()

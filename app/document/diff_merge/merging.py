@@ -8,8 +8,9 @@ conflict is noted: layout does not change the picture.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import Any
+
+from msgspec import Struct, field
 
 from ...errors import HalationError
 from ...graph import Graph
@@ -43,8 +44,7 @@ ThreeSides = tuple[Any, Any, Any]
 """A part in the base, in ours and in theirs."""
 
 
-@dataclass(frozen=True)
-class MergedGraph:
+class MergedGraph(Struct, frozen=True):
     """The result of a merge: the canonical text of the graph, and the conflicts that are left to the user."""
 
     text: str
@@ -82,8 +82,7 @@ def _graph(parts: Tree) -> Graph:
     return loads(write_parts(parts), sandbox=None)
 
 
-@dataclass
-class _PartMerger:
+class _PartMerger(Struct):
     """Merges part by part, and notes conflicts. `contested` are elements of the graph at hand: see `find_contested`."""
 
     conflicts: dict[PartPath, Conflict] = field(default_factory=dict[PartPath, Conflict])

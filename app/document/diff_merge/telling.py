@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from difflib import unified_diff
 from typing import Any, Final, Literal
+
+from msgspec import Struct
 
 from ...graph import Graph
 from .difference import GraphDifference, compare_graphs
@@ -29,8 +30,7 @@ _ORDER: Final = ("nodes", "links", "animation", "inputs", "outputs", "controls",
 _WORD: Final = {"inputs": "input", "outputs": "output", "controls": "control"}
 
 
-@dataclass(frozen=True)
-class DifferenceLine:
+class DifferenceLine(Struct, frozen=True):
     """A line about an addition, removal or change; `below` are its changed lines of code."""
 
     sign: Sign
@@ -62,8 +62,7 @@ def describe_graph(graph: Graph) -> tuple[str, ...]:
     return tuple(lines)
 
 
-@dataclass(frozen=True)
-class _PartDescription:
+class _PartDescription(Struct, frozen=True):
     """Describes one part; its unit and default are looked up in `graphs`."""
 
     at: PartPath

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 if TYPE_CHECKING:
     from ...authoring.preferences import PreferenceStore
@@ -15,8 +16,7 @@ if TYPE_CHECKING:
     from ..toolkit.services import Services
 
 
-@dataclass(frozen=True)
-class EditContext:
+class EditContext(Struct, frozen=True):
     """The collaborators of the Edit menu."""
 
     session: Session
@@ -30,8 +30,7 @@ class EditContext:
         return cls(services.session, canvas, services.clipboard, services.dialogs)
 
 
-@dataclass(frozen=True)
-class ViewSettingsContext:
+class ViewSettingsContext(Struct, frozen=True):
     """The collaborators of the View and Help menus."""
 
     session: Session

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from time import localtime, strftime
 from types import MappingProxyType
 from typing import TYPE_CHECKING
+
+from msgspec import Struct, field
 
 from ...color.gpu_programs import list_table_endings
 from ...graph.frames import VIDEO_ENDINGS
@@ -23,8 +24,7 @@ if TYPE_CHECKING:
     from .context import BrowserContext
 
 
-@dataclass
-class Browsing:
+class Browsing(Struct):
     """The state of one open request for a file."""
 
     browse: Browse

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..toolkit.context import PanelContext
@@ -14,8 +13,7 @@ if TYPE_CHECKING:
     from ..toolkit.services import Services
 
 
-@dataclass(frozen=True)
-class BrowserContext(PanelContext):
+class BrowserContext(PanelContext, frozen=True):
     """The collaborators of the file browser."""
 
     session: Session

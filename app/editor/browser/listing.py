@@ -6,10 +6,11 @@ import os
 import re
 import stat
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from threading import Thread
 from typing import Literal
+
+from msgspec import Struct
 
 from ...errors import InputError
 from ...language.translation import translate
@@ -18,8 +19,7 @@ from ..shared.fuzzy import match
 Order = Literal["name", "size", "time"]
 
 
-@dataclass(frozen=True, slots=True)
-class Item:
+class Item(Struct, frozen=True):
     """A file or a folder; `size` in bytes, `time` of the last change in seconds since 1970."""
 
     name: str

@@ -6,9 +6,10 @@ import os
 import string
 import sys
 from collections.abc import Collection, Iterable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
+
+from msgspec import Struct
 
 from ...language.translation import mark, translate
 
@@ -17,8 +18,7 @@ PlaceKind = Literal["home", "document", "folder", "recent", "drive"]
 _MOUNTS = ("/media/", "/mnt/", "/run/media/", "/Volumes/")
 
 
-@dataclass(frozen=True)
-class Place:
+class Place(Struct, frozen=True):
     """A folder in the list of places."""
 
     title: str

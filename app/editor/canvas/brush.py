@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any
 
 from halation.nodes import Kind
 from imgui_bundle import imgui
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from ..theme.fonts import Fonts
 from ..theme.palette import PALETTES, RGB, Palette
@@ -28,8 +29,7 @@ READABLE = 11.0
 """Titles are no smaller than this, in pixels at UI scale 1, however far the canvas is zoomed out."""
 
 
-@dataclass(frozen=True)
-class CanvasColors:
+class CanvasColors(Struct, frozen=True):
     """The colors of a theme, ready to draw with."""
 
     palette: Palette
@@ -114,8 +114,7 @@ def make_node_palette(theme: str) -> Palette:
     return replace(p, field=mix(p.node, p.canvas, 0.62), hover=mix(p.node, p.dim, 0.28))
 
 
-@dataclass
-class TextCache:
+class TextCache(Struct):
     """Cached widths of texts, and texts cut to a width."""
 
     _widths: dict[tuple[bool, str], float] = field(default_factory=dict[tuple[bool, str], float])
@@ -149,8 +148,7 @@ class TextCache:
         return shortened
 
 
-@dataclass
-class DrawContext:
+class DrawContext(Struct):
     """Draws in canvas units onto the panel."""
 
     draw: imgui.ImDrawList
@@ -161,9 +159,9 @@ class DrawContext:
     texts: TextCache
     visible: Rect
     """The part of the canvas that is visible."""
-    title: float = field(init=False)
+    title: float = 0.0
     """The size of titles in canvas units: it grows where they could not be read otherwise."""
-    header: float = field(init=False)
+    header: float = 0.0
     """The height of headers, which have room for their titles."""
 
     def __post_init__(self) -> None:

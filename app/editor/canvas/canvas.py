@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
+from msgspec import Struct
 
 from ...authoring.edits.element_id import NO_ELEMENT, ElementId
 from ...authoring.edits.elements import entry
@@ -58,8 +58,7 @@ _BUTTONS = (
 )
 
 
-@dataclass(frozen=True)
-class _FitState:
+class _FitState(Struct, frozen=True):
     """The elements of the last fit, the view that it gave, and its inputs."""
 
     keys: Collection[ElementId] = ()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..toolkit.context import PanelContext
@@ -22,8 +21,7 @@ if TYPE_CHECKING:
     from .view import CanvasView
 
 
-@dataclass(frozen=True)
-class CanvasContext(PanelContext):
+class CanvasContext(PanelContext, frozen=True):
     """The collaborators of the canvas."""
 
     session: Session

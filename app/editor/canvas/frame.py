@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
+from msgspec import Struct
 
 from .geometry import CanvasTransform, Point, Rect, find_pan_direction, zoom_about
 from .layout import ROW
@@ -22,8 +22,7 @@ _WHEEL_STEP = 60.0
 """Pixels that one notch of the wheel moves the view. Chosen by feel."""
 
 
-@dataclass
-class CanvasFrame:
+class CanvasFrame(Struct):
     """The mouse and the canvas in one frame. `scene` does not contain the current gesture yet."""
 
     context: CanvasContext

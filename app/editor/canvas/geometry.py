@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from ...authoring.edits.link_curves import Curve
@@ -26,8 +26,7 @@ _MARGIN = 48.0
 """Pixels around what is shown as a whole; less in a small window."""
 
 
-@dataclass(frozen=True, slots=True)
-class CanvasTransform:
+class CanvasTransform(Struct, frozen=True):
     """Canvas units to pixels of the screen: `scale` pixels per unit, the canvas origin at `x`, `y`."""
 
     x: float

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass, field, replace
+
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from ...authoring.edits import routes
 from ...authoring.edits.element_id import ElementId
@@ -18,13 +20,11 @@ MIN_FRAME_SIZE = (96.0, 64.0)
 """The least size of frames; comments may be as low as their text."""
 
 
-@dataclass(frozen=True)
-class Idle:
+class Idle(Struct, frozen=True):
     """No gesture."""
 
 
-@dataclass(frozen=True)
-class PanGesture:
+class PanGesture(Struct, frozen=True):
     """The view follows the mouse."""
 
     center: Point
@@ -32,16 +32,14 @@ class PanGesture:
     """Where the mouse button was pressed, in pixels of the screen."""
 
 
-@dataclass(frozen=True)
-class Band:
+class Band(Struct, frozen=True):
     """A rectangle that selects."""
 
     start: Point
     mode: SelectMode = "replace"
 
 
-@dataclass(frozen=True)
-class MoveGesture:
+class MoveGesture(Struct, frozen=True):
     """Elements follow the mouse; until it has moved far enough, this is a click on `key`."""
 
     key: ElementId
@@ -59,8 +57,7 @@ class MoveGesture:
         return bool(self.keys)
 
 
-@dataclass(frozen=True)
-class ResizeGesture:
+class ResizeGesture(Struct, frozen=True):
     """An edge of a frame or comment follows the mouse."""
 
     key: ElementId
@@ -70,16 +67,14 @@ class ResizeGesture:
     rect: Rect
 
 
-@dataclass(frozen=True)
-class CutGesture:
+class CutGesture(Struct, frozen=True):
     """A line across links, to cut them or to put dots on them."""
 
     start: Point
     dots: bool = False
 
 
-@dataclass(frozen=True)
-class LinkGesture:
+class LinkGesture(Struct, frozen=True):
     """A link that is dragged. `port` is the fixed end, `detached` the target that it was taken from, if any."""
 
     port: Port
@@ -221,8 +216,7 @@ def make_band_rect(band: Band, to: Point) -> Rect:
     return span_rect(band.start, to)
 
 
-@dataclass
-class GesturePreview:
+class GesturePreview(Struct):
     """The scene with the current gesture applied, and what the gesture would do."""
 
     scene: CanvasScene

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import PurePath
 from typing import Literal
 
 from halation.nodes import ItemSet, Kind, Node, Plain, Socket, Value
+from msgspec import Struct, field
 
 from ...authoring.edits.coding import LANGUAGES
 from ...authoring.edits.element_id import ElementId
@@ -39,8 +39,7 @@ MAIN = ("intensity", "amount", "strength", "exposure", "density")
 NodeSort = Literal["node", "group", "unknown", "input", "output"]
 
 
-@dataclass(frozen=True, slots=True)
-class Pin:
+class Pin(Struct, frozen=True):
     """An end of a link on an element. `value` pins drive a value; `optional` ones work without a link."""
 
     name: str
@@ -51,16 +50,14 @@ class Pin:
     value: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class FieldText:
+class FieldText(Struct, frozen=True):
     """A number or word in a field; `part` is the filled part of the field."""
 
     text: str
     part: tuple[float, float] | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class NodeRow:
+class NodeRow(Struct, frozen=True):
     """One line of a node: an input at the left, an output at the right, or a value that can be set."""
 
     y: float
@@ -84,8 +81,7 @@ class NodeRow:
         return FIELD_PAD, top, WIDTH - FIELD_PAD, top + FIELD_HEIGHT
 
 
-@dataclass(frozen=True, slots=True)
-class NodeLayout:
+class NodeLayout(Struct, frozen=True):
     """One element as it is drawn. `hidden` counts values that are not shown; `open` is True if none would be."""
 
     sort: NodeSort
@@ -141,8 +137,7 @@ def make_end_layout(end: ElementId, socket: Socket, picture: bool, doc: str = ""
     )
 
 
-@dataclass(frozen=True, slots=True)
-class NodeFacts:
+class NodeFacts(Struct, frozen=True):
     """What the layout of a node depends on besides the node: its links, and display options."""
 
     linked_ins: frozenset[str] = frozenset()

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from halation.nodes import Kind
 from imgui_bundle import imgui
+from msgspec import Struct
 
 from ...language.translation import mark, translate
 from ..theme.style import u32, ui_scale, vec4
@@ -33,8 +33,7 @@ _MOUSE = (
 )
 
 
-@dataclass
-class Legend:
+class Legend(Struct):
     """The question mark and its popup."""
 
     context: CanvasContext

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from halation.nodes import Kind
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from ...authoring.edits.element_id import ElementId
@@ -25,8 +25,7 @@ from .geometry import (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Wire:
+class Wire(Struct, frozen=True):
     """A link as drawn: one curve from pin to dot to pin. `fault` says why it cannot work."""
 
     target: Port
@@ -48,8 +47,7 @@ class Wire:
         return find_midpoint(self.curves[len(self.curves) // 2])
 
 
-@dataclass(frozen=True)
-class LinkIndex:
+class LinkIndex(Struct, frozen=True, dict=True):
     """All links, with cached polylines: they stay valid while elements change their looks but not their places."""
 
     wires: tuple[Wire, ...] = ()

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from halation.nodes import Plain, Value
 from imgui_bundle import imgui
+from msgspec import Struct, field
 
 from ...authoring.commands import SetExpression, SetValue
 from ...authoring.edits import paths
@@ -48,8 +48,7 @@ def has_live_widget(row: NodeRow) -> bool:
     return few or row.value.type in ("float", "int", "bool", "text")
 
 
-@dataclass
-class LiveFields:
+class LiveFields(Struct):
     """The widgets on nodes. `open` is the value whose list or picker is open."""
 
     context: CanvasContext

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
+from msgspec import Struct
 
 from ...authoring.edits.element_id import ElementId
 from ...graph import Problem
@@ -21,8 +21,7 @@ SLOW, COSTLY = 0.35, 0.12
 """Shares of the whole render time from which the cost of a node is red, or yellow."""
 
 
-@dataclass(frozen=True)
-class LookFacts:
+class LookFacts(Struct, frozen=True):
     """Facts for the looks of all nodes in one frame, gathered once a frame."""
 
     context: CanvasContext

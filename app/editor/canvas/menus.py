@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
+from msgspec import Struct
 
 from ...authoring.commands import AddDot, CutLinks, Disconnect, EditFrame, ExposeValue, HideControl, ResetValue
 from ...authoring.edits.element_id import ElementId
@@ -29,8 +29,7 @@ if TYPE_CHECKING:
 _POPUP = "on the canvas"
 
 
-@dataclass
-class CanvasMenus:
+class CanvasMenus(Struct):
     """The context menu for the clicked element."""
 
     context: CanvasContext

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
+from msgspec import Struct
 
 from ..theme.style import u32, ui_scale
 from .brush import DrawContext
@@ -20,8 +20,7 @@ _ROUNDED = 4.0
 """The height in pixels from which a box has round corners: on smaller ones nobody sees that they have a pixel each."""
 
 
-@dataclass
-class Minimap:
+class Minimap(Struct):
     """The minimap; `dragging` while the user drags in it."""
 
     context: CanvasContext

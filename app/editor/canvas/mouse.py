@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from ...authoring.commands import (
     AddDot,
@@ -65,8 +66,7 @@ _SNAP_REACH = 30.0
 """Pixels from which a dragged link snaps to a pin: about a row of sockets. Chosen by feel."""
 
 
-@dataclass
-class PanelRequests:
+class PanelRequests(Struct):
     """Requests of a gesture to the canvas: a menu, the search, a text field, expanding a node."""
 
     menu: Hit | None = None
@@ -75,8 +75,7 @@ class PanelRequests:
     toggle: ElementId = NO_ELEMENT
 
 
-@dataclass
-class CanvasMouse:
+class CanvasMouse(Struct):
     """The current gesture, and what is under the pointer."""
 
     gesture: Gesture = IDLE

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
+from msgspec import Struct
 
 from ...authoring.commands import EditComment, EditFrame, RenameEnd, RenameNode
 from ...authoring.edits.element_id import NO_ELEMENT, ElementId
@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     from .context import CanvasContext
 
 
-@dataclass
-class NameField:
+class NameField(Struct):
     """The text field on an element, and which element that is."""
 
     context: CanvasContext

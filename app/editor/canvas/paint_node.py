@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Literal
 
 from halation.nodes import Kind
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
+from msgspec import Struct
 
 from ...language.translation import translate
 from ..shared.declared_words import name_value
@@ -29,8 +29,7 @@ _INSET = 12.0
 PinShape = Literal["circle", "diamond", "square", "triangle"]
 
 
-@dataclass(slots=True)
-class NodeLook:
+class NodeLook(Struct):
     """The state of a node in one frame. `lit` are the pins that a dragged link fits; None if no link is dragged."""
 
     selected: bool = False

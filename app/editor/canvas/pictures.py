@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 from ...authoring.edits.element_id import ElementId
 from ...authoring.edits.elements import Sizes
@@ -13,8 +14,7 @@ if TYPE_CHECKING:
     from .context import CanvasContext
 
 
-@dataclass
-class ThumbnailSlots:
+class ThumbnailSlots(Struct):
     """The elements that have had a thumbnail: its place stays, and an outdated thumbnail is dimmed.
 
     No picture is ever computed for its own sake, so nodes that became part of a larger step never have one; they look

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
+
+from msgspec import Struct, field
 
 from .brush import DETAILS_FROM, DrawContext
 from .geometry import CanvasTransform, Rect, overlaps
@@ -18,8 +19,7 @@ _PIN = 5.0
 NamedRects = dict[str, Rect]
 
 
-@dataclass
-class PlaceRecorder:
+class PlaceRecorder(Struct):
     """Records the rectangles of elements and links, cached until they move."""
 
     context: CanvasContext

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Literal
+
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from ...authoring.edits.element_id import NO_ELEMENT, ElementId
 from ...authoring.edits.link_curves import Curve, make_curve
@@ -24,8 +26,7 @@ Sort = Literal["node", "end", "frame", "comment", "dot"]
 Part = Literal["pin", "field", "more", "title", "body", "edge", "link", "empty"]
 
 
-@dataclass(frozen=True, slots=True)
-class ElementBox:
+class ElementBox(Struct, frozen=True):
     """An element: its rectangle, and the layout within for nodes and ends. Dots are boxes around their center."""
 
     key: ElementId
@@ -46,8 +47,7 @@ class ElementBox:
         return self.key.port or Port(self.key, pin.name)
 
 
-@dataclass(frozen=True, slots=True)
-class Hit:
+class Hit(Struct, frozen=True):
     """What is under a point. `name` is the row of a field, or the edges (of `lrtb`) of a frame or comment."""
 
     part: Part = "empty"
@@ -60,8 +60,7 @@ class Hit:
 EMPTY = Hit()
 
 
-@dataclass(frozen=True)
-class CanvasScene:
+class CanvasScene(Struct, frozen=True, dict=True):
     """Elements in the order in which they are drawn, and links."""
 
     boxes: dict[ElementId, ElementBox]

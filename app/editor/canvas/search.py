@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from halation.nodes import Kind
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
+from msgspec import Struct, field
 
 from ...authoring.commands import (
     AddCodeFile,
@@ -62,8 +62,7 @@ _FOOT_LINES = 3
 """Lines below the list: no first line of a node's text is longer at this width."""
 
 
-@dataclass
-class NodeSearch:
+class NodeSearch(Struct):
     """The search popup: its text, the marked line, and where the new node goes."""
 
     context: CanvasContext

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from msgspec import Struct, field
 
 from .brush import TEXT, CanvasColors, DrawContext
 from .geometry import Rect
@@ -10,8 +10,7 @@ from .geometry import Rect
 Corner = tuple[float, float]
 
 
-@dataclass
-class Sketch:
+class Sketch(Struct):
     """Shapes and words in canvas units; shapes come first, words on top."""
 
     brush: DrawContext

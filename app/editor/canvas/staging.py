@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
-from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from textwrap import wrap
 from typing import Any
 
 from halation.nodes import Node
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from ...authoring.edits.element_id import ElementId
 from ...authoring.edits.elements import entry, list_decor
@@ -29,8 +30,7 @@ SceneOptions = tuple[Collection[ElementId], str, frozenset[str]]
 FRAME_SIZE, COMMENT_SIZE = (320.0, 200.0), (200.0, 64.0)
 
 
-@dataclass
-class SceneBuilder:
+class SceneBuilder(Struct):
     """Builds scenes; caches the layouts of unchanged nodes. `expanded` are nodes that show all their values."""
 
     expanded: set[str] = field(default_factory=set[str])

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
-from dataclasses import dataclass
 from typing import Literal
+
+from msgspec import Struct
 
 from ...authoring.edits.element_id import NO_ELEMENT, ElementId
 from ...authoring.edits.elements import Sizes
@@ -15,8 +16,7 @@ MIN_ZOOM, MAX_ZOOM = 0.08, 4.0
 Tool = Literal["", "cut", "dot"]
 
 
-@dataclass
-class CanvasView:
+class CanvasView(Struct):
     """Pan and zoom of the canvas. `center` is the canvas position in the middle of the panel."""
 
     center: tuple[float, float] = (0.0, 0.0)

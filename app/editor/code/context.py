@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..toolkit.context import PanelContext
@@ -16,8 +15,7 @@ if TYPE_CHECKING:
     from .state import CodeState
 
 
-@dataclass(frozen=True)
-class CodeContext(PanelContext):
+class CodeContext(PanelContext, frozen=True):
     """The collaborators of the Code panel."""
 
     session: Session

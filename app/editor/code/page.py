@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle.imgui_color_text_edit import TextEditor
+from msgspec import Struct, field
 
 from ...authoring.commands import SetCode
 from ...custom_nodes import Code, CodeFault, CustomNode, node_type
@@ -25,8 +25,7 @@ BURST = 2.0
 """Seconds without typing after which a new undo step begins."""
 
 
-@dataclass(frozen=True)
-class Fault:
+class Fault(Struct, frozen=True):
     """An error in a text; `line` is 0 if it belongs to no line."""
 
     line: int
@@ -39,8 +38,7 @@ class Fault:
         return translate("Line {line}: {sentence}", line=self.line, sentence=self.sentence) if self.line else sentence
 
 
-@dataclass(eq=False)
-class Page:
+class Page(Struct, eq=False):
     """The editor widget of a node, its last text, and the text in the document."""
 
     context: CodeContext

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 
 def _do_nothing() -> None:
     """Do nothing: there is no panel yet."""
 
 
-@dataclass
-class CodeState:
+class CodeState(Struct):
     """Requests to the Code panel, and what it shows."""
 
     focus: bool = False

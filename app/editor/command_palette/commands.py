@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 from ...authoring.commands import AddGroupFile, AddNode, AppendNode
 from ...authoring.edits.element_id import ElementId
@@ -27,8 +28,7 @@ _ALIAS = 8.0
 label (`gb`, Gaussian Blur) come before the beginning of an alias (`gbuffer`)."""
 
 
-@dataclass(frozen=True)
-class Command:
+class Command(Struct, frozen=True):
     """One line of the palette. `reason` says why it is disabled, "" if it is not."""
 
     id: str

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass, field
 
 import numpy as np
+from msgspec import Struct, field
 from numpy.typing import NDArray
 
 from ...graph import Interpolation, Keys, Port
@@ -27,8 +27,7 @@ _BEYOND = 12.0
 """Pixels beyond the border at which keys are still drawn."""
 
 
-@dataclass(frozen=True)
-class CurveShape:
+class CurveShape(Struct, frozen=True):
     """A channel of keys: its pieces, and the frames, values, names and shapes of its keys."""
 
     keys: Keys
@@ -52,8 +51,7 @@ def make_shape(lane: Lane, keys: Keys, inner: Pieces) -> CurveShape:
     )
 
 
-@dataclass(frozen=True)
-class Bundle:
+class Bundle(Struct, frozen=True):
     """Channels one after the other; `piece_of` and `key_of` say which one a piece and a key belong to."""
 
     lanes: tuple[Lane, ...] = ()
@@ -103,8 +101,7 @@ class Bundle:
         return lane_indices, screen, bent, np.cumsum([0, *map(len, outside_pieces)]).tolist()
 
 
-@dataclass(frozen=True)
-class VisibleCurves:
+class VisibleCurves(Struct, frozen=True):
     """The pieces on the screen, `cuts` where those of every channel begin, and the keys: which, and where."""
 
     bundle: Bundle

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..toolkit.context import PanelContext
@@ -15,8 +14,7 @@ if TYPE_CHECKING:
     from .state import CurvesState
 
 
-@dataclass(frozen=True)
-class CurvesContext(PanelContext):
+class CurvesContext(PanelContext, frozen=True):
     """The collaborators of the Animation panel."""
 
     session: Session

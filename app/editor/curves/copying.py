@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
 from typing import Any, get_args
+
+from msgspec import Struct
 
 from ...errors import UsageError
 from ...graph import Animation, Graph, Interpolation, Key, Keys, Port
@@ -16,8 +17,7 @@ from .rows import Spot, list_spots
 _NAME = "halation keys"
 
 
-@dataclass(frozen=True)
-class CopiedKeys:
+class CopiedKeys(Struct, frozen=True):
     """Keys by value, frames counted from the first of all."""
 
     keys: Mapping[Port, tuple[Key, ...]]

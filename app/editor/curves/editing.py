@@ -8,10 +8,10 @@ Nothing here draws.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field
 from typing import Literal
 
 from halation.nodes import Scalar
+from msgspec import Struct, field
 from msgspec.structs import replace
 
 from ...graph import Animation, Extrapolation, Interpolation, Key, Keys, Port
@@ -38,8 +38,7 @@ MIN_SCALE = 0.01
 """The smallest factor for scaling keys, so that they never all fall on one frame."""
 
 
-@dataclass(frozen=True)
-class KeyEdit:
+class KeyEdit(Struct, frozen=True):
     """New keys by value, and the selected keys."""
 
     new_keys: Mapping[Port, Keys] = field(default_factory=dict[Port, Keys])

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
+from msgspec import Struct
 
 from ...graph import Graph, Keys, Port
 from ..theme.palette import RGB
@@ -26,8 +26,7 @@ SMALL = 12.5
 """The font size of axes."""
 
 
-@dataclass
-class CurvesFrame:
+class CurvesFrame(Struct):
     """Where the parts of the panel are, and what is in them."""
 
     context: CurvesContext

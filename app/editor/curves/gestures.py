@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 from ...graph import Animation, Keys, Port
 from ...graph.keys import round_keys
@@ -16,8 +17,7 @@ At = tuple[float, float]
 """A frame and a value."""
 
 
-@dataclass(frozen=True)
-class PlotPan:
+class PlotPan(Struct, frozen=True):
     """The view follows the mouse: where that was on the screen, and the view and scrolling then."""
 
     start: tuple[float, float]
@@ -25,21 +25,18 @@ class PlotPan:
     scroll: float
 
 
-@dataclass(frozen=True)
-class Seek:
+class Seek(Struct, frozen=True):
     """The current frame follows the mouse."""
 
 
-@dataclass(frozen=True)
-class KeyBox:
+class KeyBox(Struct, frozen=True):
     """A rectangle from a place (frame, and value or pixels down the rows) to the mouse."""
 
     start: At
     how: str
 
 
-@dataclass(frozen=True)
-class KeyMove:
+class KeyMove(Struct, frozen=True):
     """The selected keys follow the mouse. `grabbed` is the frame of the one that it holds."""
 
     base: Animations
@@ -59,8 +56,7 @@ class KeyMove:
         return move_keys(self.base, self.spots, by, at[1] - self.start[1] if up else 0.0, limits)
 
 
-@dataclass(frozen=True)
-class KeyScale:
+class KeyScale(Struct, frozen=True):
     """The selected keys are scaled about the frame `about`; the mouse drags the frame `grabbed`."""
 
     base: Animations
@@ -80,8 +76,7 @@ class KeyScale:
         return scale_keys(self.base, self.spots, factor, self.about, snap)
 
 
-@dataclass(frozen=True)
-class HandleDrag:
+class HandleDrag(Struct, frozen=True):
     """The end of a handle follows the mouse; `offset` is the distance from it to the mouse at the start."""
 
     base: Keys

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Literal
 
 from imgui_bundle import imgui
+from msgspec.structs import replace
 
 from ...graph import Keys
 from ...language.translation import translate

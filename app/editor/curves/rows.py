@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 from ...authoring.edits.naming import value_label
 from ...errors import GraphError
@@ -18,8 +19,7 @@ Lane = tuple[Port, int]
 COLORS, VECTORS = "rgba", "xyzw"
 
 
-@dataclass(frozen=True)
-class CurveRow:
+class CurveRow(Struct, frozen=True):
     """A value of a node; one without a port is the node, which sums up the rows below it."""
 
     node: str

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import Literal
+
+from msgspec import Struct, field
 
 from ...graph import Graph, Keys, Port
 from ..toolkit.plane import View
@@ -13,8 +14,7 @@ Mode = Literal["sheet", "curves"]
 Fit = Literal["", "all", "chosen"]
 
 
-@dataclass
-class CurvesState:
+class CurvesState(Struct):
     """The Animation panel. Both modes share the view, the rows and the selected keys."""
 
     mode: Mode = "sheet"

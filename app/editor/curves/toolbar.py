@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
+from msgspec import Struct
 
 from ...authoring.commands import SetKey
 from ...authoring.edits.naming import value_label
@@ -45,8 +45,7 @@ _MOUSE = (
 )
 
 
-@dataclass(frozen=True)
-class _CurveTool:
+class _CurveTool(Struct, frozen=True):
     width: float
     draw: Callable[[], object]
     starts_group: bool = False

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 from halation.nodes import Plain, Value
 from imgui_bundle import imgui
 from msgspec import structs
+from msgspec.structs import replace
 
 from ...language.translation import translate
 from ..theme.style import mix, u32, ui_scale

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from halation.nodes import Plain, Value
+from msgspec import Struct, field
 
 from ...errors import UsageError
 from ..theme.palette import Palette
@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from ..toolkit.places import Rect
 
 
-@dataclass(frozen=True)
-class Edit:
+class Edit(Struct, frozen=True):
     """A new value. Edits of one gesture, such as a drag, have the same `merge`; `text` is the typed text."""
 
     value: Plain
@@ -28,8 +27,7 @@ class Edit:
     """The typed expression, with its `=`; then `value` is the old value."""
 
 
-@dataclass
-class Typing:
+class Typing(Struct):
     """The field that has the text cursor. `number` says how its text is read; None takes it as it is."""
 
     id: str
@@ -67,8 +65,7 @@ class Typing:
         return ""
 
 
-@dataclass
-class Fields:
+class Fields(Struct):
     """The state of the fields of one panel: at most one is dragged and at most one is typed in."""
 
     palette: Palette

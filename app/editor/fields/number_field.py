@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from halation.nodes import Plain, Value
 from imgui_bundle import imgui
 from msgspec import structs
+from msgspec.structs import replace
 
 from ..theme.style import mix, u32, ui_scale
 from ..toolkit.fields import background

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from decimal import Decimal
 from types import MappingProxyType
 
 from halation.nodes import Value, read_reference
+from msgspec import Struct
 
 from ...errors import UsageError
 from ...language.translation import mark, translate
@@ -133,8 +133,7 @@ def bar(number: float, declaration: Value) -> tuple[float, float] | None:
     return min(zero, place), max(zero, place)
 
 
-@dataclass(frozen=True)
-class Drag:
+class Drag(Struct, frozen=True):
     """A drag of a number: its start, and how far it was moved since, in its own units."""
 
     start: float

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import pairwise
 
 from halation.nodes import Plain, Value
 from imgui_bundle import imgui
+from msgspec.structs import replace
 
 from ...language.translation import translate
 from ..theme.style import u32, ui_scale

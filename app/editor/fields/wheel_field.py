@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import colorsys
 import math
-from dataclasses import replace
 
 from halation.nodes import Value
 from imgui_bundle import imgui
+from msgspec.structs import replace
 
 from ...language.translation import mark, translate
 from ..shared.declared_words import name_value

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..toolkit.context import PanelContext
@@ -12,8 +11,7 @@ if TYPE_CHECKING:
     from ..toolkit.services import Services
 
 
-@dataclass(frozen=True)
-class HistoryContext(PanelContext):
+class HistoryContext(PanelContext, frozen=True):
     """The collaborators of the History panel."""
 
     session: Session

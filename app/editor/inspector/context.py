@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..toolkit.context import PanelContext
@@ -18,8 +17,7 @@ if TYPE_CHECKING:
     from ..toolkit.services import Services
 
 
-@dataclass(frozen=True)
-class InspectorContext(PanelContext):
+class InspectorContext(PanelContext, frozen=True):
     """The collaborators of the inspector."""
 
     session: Session

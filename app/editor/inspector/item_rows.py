@@ -6,12 +6,12 @@ The list shows what the fields `color`, `on`, `solo`, `intensity` and `exposure`
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from halation.nodes import Items, ItemSet
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
+from msgspec import Struct
 
 from ...authoring.commands import AddItem, DuplicateItem, ExchangeItems, RemoveItem, RenameItem, SetValue
 from ...graph import Port
@@ -37,8 +37,7 @@ _MENU = "item menu"
 _EITHER = int(imgui.ButtonFlags_.mouse_button_left) | int(imgui.ButtonFlags_.mouse_button_right)
 
 
-@dataclass(frozen=True)
-class _ItemAction:
+class _ItemAction(Struct, frozen=True):
     """An action on the selected item."""
 
     icon: str
@@ -47,8 +46,7 @@ class _ItemAction:
     enabled: bool
 
 
-@dataclass(frozen=True)
-class ItemRows:
+class ItemRows(Struct, frozen=True):
     """Draws the items of one value. `draw_field` draws the row of a field of an item."""
 
     rows: Rows
@@ -276,8 +274,7 @@ class ItemRows:
         write((left, rect[1], rect[2], rect[3]), words, rows.palette.dim, align=1.0)
 
 
-@dataclass(frozen=True)
-class _Switch:
+class _Switch(Struct, frozen=True):
     """A field that is switched in the list."""
 
     field: str

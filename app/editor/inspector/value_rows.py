@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -53,17 +52,14 @@ if TYPE_CHECKING:
 _MENU = "value menu"
 
 
-@dataclass
 class ValueRows:
     """Draws the values of one node, or those that several nodes have in common."""
 
-    fields: Fields
-    files: FileField
-    _targets: dict[str, tuple[Ports, Value]] = field(default_factory=dict[str, "tuple[Ports, Value]"])
-    _renaming: str = ""
-
-    def __post_init__(self) -> None:
-        self._keying = Keying(self.fields)
+    def __init__(self, fields: Fields, files: FileField) -> None:
+        self.fields, self.files = fields, files
+        self._keying = Keying(fields)
+        self._targets: dict[str, tuple[Ports, Value]] = {}
+        self._renaming = ""
 
     def draw(self, rows: Rows, ports: Ports, declaration: Value, label: str = "", color: RGB | None = None) -> None:
         """Draw one row; `ports` are the same value of several nodes, the active one first."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..toolkit.context import PanelContext
@@ -16,8 +15,7 @@ if TYPE_CHECKING:
     from ..toolkit.services import Services
 
 
-@dataclass(frozen=True)
-class PresetContext(PanelContext):
+class PresetContext(PanelContext, frozen=True):
     """The collaborators of the dialog."""
 
     session: Session

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from imgui_bundle import ImVec2, imgui
+from msgspec import Struct, field
 
 from ...authoring.edits.extracting import extract_graph
 from ...authoring.library import find_preset_file, list_folders, make_preset_name, save_preset, split_tags
@@ -38,8 +38,7 @@ _DOC_LINES = 3
 _ENTERED = int(imgui.InputTextFlags_.enter_returns_true)
 
 
-@dataclass
-class _PresetForm:
+class _PresetForm(Struct):
     """What the user has typed."""
 
     name: str = ""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..toolkit.context import PanelContext
@@ -13,8 +12,7 @@ if TYPE_CHECKING:
     from ..toolkit.services import Services
 
 
-@dataclass(frozen=True)
-class MatchContext(PanelContext):
+class MatchContext(PanelContext, frozen=True):
     """The collaborators of the window."""
 
     session: Session

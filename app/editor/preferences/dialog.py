@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
+from msgspec.structs import asdict
 
 from ...authoring.background.shader_files import CUSTOMARY
 from ...authoring.preferences import MAX_SCALE, MIN_SCALE, Preferences
@@ -167,7 +168,7 @@ class PreferencesDialog:
         default = Preferences()
         if imgui.button(translate_label("Reset all preferences")):
             lists = ("recent", "folders", "extra", "shortcuts", "hint_seen", "isf_folders", "preset_folders")
-            _change(self._context, **{name: value for name, value in vars(default).items() if name not in lists})
+            _change(self._context, **{name: value for name, value in asdict(default).items() if name not in lists})
         record(self._context, "reset preferences")
 
     def _draw_folders(self, kind: str, sentence: str) -> None:

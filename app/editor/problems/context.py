@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..toolkit.context import PanelContext
@@ -17,8 +16,7 @@ if TYPE_CHECKING:
     from ..toolkit.services import Services
 
 
-@dataclass(frozen=True)
-class ProblemsContext(PanelContext):
+class ProblemsContext(PanelContext, frozen=True):
     """The collaborators of the Problems panel."""
 
     session: Session

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 from ...authoring.edits.element_id import ElementId
 from ...authoring.log import Level
@@ -15,8 +16,7 @@ if TYPE_CHECKING:
     from .context import ProblemsContext
 
 
-@dataclass(frozen=True)
-class ListedProblem:
+class ListedProblem(Struct, frozen=True):
     """One problem. `where` is the path of a node, such as `glow/blur` or `inputs.beauty`, or ""."""
 
     level: Level

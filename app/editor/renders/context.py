@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..toolkit.context import PanelContext
@@ -18,8 +17,7 @@ if TYPE_CHECKING:
     from ..workflows.flipbook import FlipbookPlayer
 
 
-@dataclass(frozen=True)
-class RendersContext(PanelContext):
+class RendersContext(PanelContext, frozen=True):
     """The collaborators of the Renders panel."""
 
     session: Session

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from halation.nodes import Kind
+from msgspec import Struct, field
 from msgspec.structs import replace
 
 from ...authoring.render_queue.queue import QueuedFiles, QueuedRender, RenderJob
@@ -57,8 +57,7 @@ _FRESH = 1.0
 """Seconds for which the last look at the disk is reused."""
 
 
-@dataclass(frozen=True)
-class RenderTargets:
+class RenderTargets(Struct, frozen=True):
     """The files that a render would write, how many of them `exist`, or why it is impossible."""
 
     files: int = 0
@@ -68,8 +67,7 @@ class RenderTargets:
     fault: str = ""
 
 
-@dataclass
-class RenderForm:
+class RenderForm(Struct):
     """The choices of the form. `files` are the typed paths by output; "" takes the suggestion."""
 
     context: RendersContext

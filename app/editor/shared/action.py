@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Generic, Literal, Never, TypeVar
+
+from msgspec import Struct
 
 from ...authoring.log import Log
 
@@ -21,8 +22,7 @@ def always(context: object) -> bool:
     return True
 
 
-@dataclass(frozen=True)
-class Action(Generic[C]):
+class Action(Struct, Generic[C], frozen=True):
     """Something the user can do from a menu, by a shortcut, from a context menu or the command palette.
 
     `run` does it with the context of the panel that it belongs to; `enabled` and `checked` are questions about that.
@@ -50,8 +50,7 @@ ListedAction = Action[Never]
 """An action of any panel: it can be listed, but only `Actions`, which has its context, can run it."""
 
 
-@dataclass(frozen=True)
-class BoundAction:
+class BoundAction(Struct, frozen=True):
     """What an action does, with the context that it works on."""
 
     run: Callable[[], object]

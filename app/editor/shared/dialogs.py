@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
 from halation.nodes import Value
+from msgspec import Struct, field
 
 from ...language.translation import translate
 from .window_commands import PanelTitle
@@ -16,8 +16,7 @@ Purpose = Literal["graph", "image", "table", "scene", "font", "config", "code", 
 """The kind of file: it decides which files are listed and which folder is remembered."""
 
 
-@dataclass(frozen=True)
-class Browse:
+class Browse(Struct, frozen=True):
     """A request for a file, which `then` gets. `saving` asks for a new name, starting from `name`.
 
     With `has_pictures` a picture will do as well as a graph.
@@ -44,8 +43,7 @@ def browse(declaration: Value, then: Callable[[Path], object]) -> Browse:
             return Browse(translate("Choose an Image"), "image", then)
 
 
-@dataclass(frozen=True)
-class Question:
+class Question(Struct, frozen=True):
     """A question with answers, the safest one last; Escape chooses that one."""
 
     title: str
@@ -53,8 +51,7 @@ class Question:
     answers: tuple[tuple[str, Callable[[], object]], ...]
 
 
-@dataclass
-class Dialogs:
+class Dialogs(Struct):
     """What is open on top of the panels: at most one dialog of each kind."""
 
     browse: Browse | None = None

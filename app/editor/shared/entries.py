@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
 
 from halation.nodes import Kind, Node, Plain
+from msgspec import Struct
 
 from ...authoring.background.shader_files import ShaderFile
 from ...authoring.edits.coding import CODE, make_starter_node
@@ -74,8 +74,7 @@ _END_ALIASES: Mapping[str, tuple[str, ...]] = MappingProxyType(
 """What other programs call the inputs and outputs of a graph: an output is what their write nodes are."""
 
 
-@dataclass(frozen=True)
-class CatalogEntry:
+class CatalogEntry(Struct, frozen=True, dict=True):
     """One entry of the catalog. `id` is a node type, a path (of presets) or a word such as `frame`, by category."""
 
     id: str
@@ -207,8 +206,7 @@ def graph_entries() -> tuple[CatalogEntry, ...]:
     )
 
 
-@dataclass(frozen=True)
-class Section:
+class Section(Struct, frozen=True):
     """Entries under a heading."""
 
     title: str

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
+
+from msgspec import Struct
 
 _LETTER, _WORD_START, _FIRST, _NEXT, _GAP, _SHORT = 1.0, 8.0, 2.0, 8.0, 0.3, 0.05
 """What a letter that matches is worth, more at the start of a word, of the text, and right after the one before; what
@@ -14,8 +15,7 @@ nodes 492 find their node first. Half or twice one of the numbers gives 488 to 4
 """
 
 
-@dataclass(frozen=True, slots=True)
-class Match:
+class Match(Struct, frozen=True):
     """A matching candidate: its index in the list, its score, and the letters that matched."""
 
     index: int

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 if TYPE_CHECKING:
     from ...authoring.flipbook import Flipbook
     from ...authoring.session import Session
 
 
-@dataclass
-class DocumentStage:
+class DocumentStage(Struct):
     """The document, and the flipbook that is played in its place while one is open."""
 
     document: Session

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Literal
+
+from msgspec import Struct, field
 
 LayoutName = Literal["composite", "beside", "code", "animate", "review"]
 """Layouts of panels by what the user does; "beside" has the graph beside the viewer."""
@@ -26,8 +27,7 @@ class PanelTitle(StrEnum):
     PASSES = "Passes"
 
 
-@dataclass
-class WindowCommands:
+class WindowCommands(Struct):
     """The open requests to the window, which removes each when it is served."""
 
     closing: bool = False

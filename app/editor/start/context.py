@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..toolkit.context import PanelContext
@@ -17,8 +16,7 @@ if TYPE_CHECKING:
     from ..workflows.documents import DocumentWorkflow
 
 
-@dataclass(frozen=True)
-class StartContext(PanelContext):
+class StartContext(PanelContext, frozen=True):
     """The collaborators of the start screen."""
 
     store: PreferenceStore

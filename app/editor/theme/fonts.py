@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import imgui_bundle
 from imgui_bundle import hello_imgui, imgui
+from msgspec import Struct
 
 from .style import EM
 
 
-@dataclass(frozen=True)
-class Fonts:
+class Fonts(Struct, frozen=True):
     """The loaded fonts, in any size."""
 
     text: imgui.ImFont

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 
 from halation.nodes import Kind
+from msgspec import Struct
 
 from ...media.comparison.category_colors import DARK_CATEGORIES, LIGHT_CATEGORIES, RGB, category_color, parse_hex
 
 
-@dataclass(frozen=True)
-class Palette:
+class Palette(Struct, frozen=True):
     """The colors of one theme, by their use."""
 
     name: str

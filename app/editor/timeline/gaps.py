@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
 from pathlib import Path
+
+from msgspec import Struct
 
 from ...authoring.session import Session
 from ...compiler import find_named_files
@@ -25,13 +26,12 @@ Gaps = tuple[tuple[int, int], ...]
 """The first and last frame of each gap."""
 
 
-@dataclass
-class MissingFrames:
+class MissingFrames(Struct):
     """The gaps in the sequences of one document; cached."""
 
     gaps: Gaps = ()
     _of: tuple[object, ...] = ()
-    _at: float = field(default=float("-inf"))
+    _at: float = float("-inf")
 
     def update(self, session: Session, time_now: float) -> Gaps:
         """The gaps: frames between the first and the last file of a sequence that have no file."""

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from dataclasses import dataclass, field
 from typing import Literal
+
+from msgspec import Struct, field
 
 Loop = Literal["loop", "once", "ping-pong"]
 LOOPS: tuple[Loop, ...] = ("loop", "once", "ping-pong")
@@ -17,8 +18,7 @@ FURTHEST = 12
 """The most frames that are skipped to find one that can be ready in time: half a second at 24 fps."""
 
 
-@dataclass(frozen=True)
-class Course:
+class Course(Struct, frozen=True):
     """The frames to play, how they loop, and the frame rate."""
 
     first: int
@@ -51,8 +51,7 @@ class Course:
         return self.loop == "once" and place >= self.length - 1
 
 
-@dataclass
-class Playback:
+class Playback(Struct):
     """The state of playback. Times are passed in, so that tests need no clock."""
 
     course: Course | None = None

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from imgui_bundle import imgui
+from msgspec import Struct, field
 
 from ...language.translation import translate
 from ..theme.style import mix, u32, ui_scale
@@ -32,8 +32,7 @@ _BUTTONS = (
 LEFT, RIGHT, MIDDLE = imgui.MouseButton_.left, imgui.MouseButton_.right, imgui.MouseButton_.middle
 
 
-@dataclass
-class Ruler:
+class Ruler(Struct):
     """Draws the ruler; the mouse scrubs, sets the playback range, pans and zooms."""
 
     context: TimelineContext

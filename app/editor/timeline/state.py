@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
+
+from msgspec import Struct, field
 
 from .playback import LOOPS, Course, Loop, Playback
 
@@ -14,8 +15,7 @@ LEAST_VIEW = 4.0
 """The least number of visible frames."""
 
 
-@dataclass
-class TimelineState:
+class TimelineState(Struct):
     """Playback, the playback range, and the visible range."""
 
     playback: Playback = field(default_factory=Playback)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from msgspec import Struct, field
 
 from ...authoring.log import Log
 from ...authoring.preferences import PreferenceStore
@@ -12,8 +12,7 @@ from ..theme.palette import PALETTES, Palette
 from .places import Rect
 
 
-@dataclass
-class Interface:
+class Interface(Struct):
     """How the window looks, where its widgets are, and whether the user drags a value in it."""
 
     store: PreferenceStore
@@ -31,8 +30,7 @@ class Interface:
         return PALETTES[self.store.current.theme]
 
 
-@dataclass(frozen=True)
-class PanelContext:
+class PanelContext(Struct, frozen=True):
     """The base of what panels receive: each panel adds the collaborators that it uses, and no others."""
 
     interface: Interface

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 _NO_SPAN = 1e-9
 """A span of values that is 0 but for rounding: it has no share."""
@@ -19,8 +21,7 @@ _BESIDE, _ABOVE = 0.05, 0.14
 """The margins around what is fitted into view, as fractions of it."""
 
 
-@dataclass(frozen=True)
-class View:
+class View(Struct, frozen=True):
     """The frames and values at the borders of the panel."""
 
     first: float = 0.0
@@ -50,8 +51,7 @@ class View:
         return view
 
 
-@dataclass(frozen=True)
-class Plane:
+class Plane(Struct, frozen=True):
     """A view on a rectangle of the screen; values grow upwards."""
 
     view: View
@@ -84,8 +84,7 @@ class Plane:
         return self.view.low + (self.rect[3] - y) / self.up
 
 
-@dataclass(frozen=True)
-class Tick:
+class Tick(Struct, frozen=True):
     """A line of a grid; a small one has no label."""
 
     at: float

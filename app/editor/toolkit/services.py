@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
+
+from msgspec import Struct, field
 
 from ...authoring.background.render_overviews import RenderOverviews
 from ...authoring.background.shader_files import ShaderFiles
@@ -30,8 +31,7 @@ if TYPE_CHECKING:
     from ..shared.protocols import SystemText
 
 
-@dataclass
-class Services:
+class Services(Struct):
     """The document, its pictures, the user's preferences, and what goes on in the background.
 
     Only the `compose` of each panel's context sees all of it, to pick what that panel uses.

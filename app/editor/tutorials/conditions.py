@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections import defaultdict
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 from ...graph import Graph, Group, Port, Unknown
 from ...graph.walk import find_route
@@ -14,19 +14,18 @@ if TYPE_CHECKING:
     from .moment import Moment
 
 
-class GraphCondition(ABC):
+class GraphCondition(Struct, frozen=True):
     """A statement about a graph, which is also the question whether a step is done."""
 
-    @abstractmethod
     def holds(self, graph: Graph) -> bool:
         """True if the statement is true of a graph."""
+        raise NotImplementedError
 
     def __call__(self, before: Moment, now: Moment) -> bool:
         return self.holds(now.graph)
 
 
-@dataclass(frozen=True)
-class IsLinked(GraphCondition):
+class IsLinked(GraphCondition, frozen=True):
     """A port is fed by another one."""
 
     target: str
@@ -36,8 +35,7 @@ class IsLinked(GraphCondition):
         return graph.links.get(Port.parse(self.target)) == Port.parse(self.source)
 
 
-@dataclass(frozen=True)
-class IsWithin(GraphCondition):
+class IsWithin(GraphCondition, frozen=True):
     """A number lies in a range, both ends included."""
 
     port: str
@@ -49,8 +47,7 @@ class IsWithin(GraphCondition):
         return isinstance(number, float | int) and self.low <= number <= self.high
 
 
-@dataclass(frozen=True)
-class IsChosen(GraphCondition):
+class IsChosen(GraphCondition, frozen=True):
     """A value is one of several choices."""
 
     port: str
@@ -60,8 +57,7 @@ class IsChosen(GraphCondition):
         return _find_value(graph, self.port) == self.choice
 
 
-@dataclass(frozen=True)
-class IsUpstream(GraphCondition):
+class IsUpstream(GraphCondition, frozen=True):
     """A node of one type feeds a node of another type, directly or through others, and not the other way round."""
 
     type: str
@@ -71,8 +67,7 @@ class IsUpstream(GraphCondition):
         return _feeds(graph, self.type, self.of) and not _feeds(graph, self.of, self.type)
 
 
-@dataclass(frozen=True)
-class AllHold(GraphCondition):
+class AllHold(GraphCondition, frozen=True):
     """Several conditions hold together."""
 
     parts: tuple[GraphCondition, ...]

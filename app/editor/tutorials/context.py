@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
+
+from msgspec import Struct, field
 
 from ..toolkit.context import PanelContext
 from ..toolkit.places import Rect
@@ -20,8 +21,7 @@ if TYPE_CHECKING:
     from ..workflows.documents import DocumentWorkflow
 
 
-@dataclass
-class LessonProgress:
+class LessonProgress(Struct):
     """The lesson that is open, and how far the user is."""
 
     lesson: Lesson | None = None
@@ -52,8 +52,7 @@ class LessonProgress:
             self.begin(None)
 
 
-@dataclass(frozen=True)
-class TutorialContext(PanelContext):
+class TutorialContext(PanelContext, frozen=True):
     """The collaborators of the tutorials."""
 
     session: Session

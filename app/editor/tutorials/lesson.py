@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from halation import presets
+from msgspec import Struct
 
 from ...graph import Graph, Port
 from ..shared.window_commands import PanelTitle
@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from ...authoring.commands import EditCommand
 
 
-@dataclass(frozen=True)
-class Step:
+class Step(Struct, frozen=True):
     """One step: what to do, the widget that it is about, and when it is done. Without a question the user goes on.
 
     `{node.add}` in the sentence stands for the shortcut of that action, `widget` may be a panel. As the step begins,
@@ -35,8 +34,7 @@ class Step:
     solution: tuple[EditCommand[Any], ...] = ()
 
 
-@dataclass(frozen=True)
-class Lesson:
+class Lesson(Struct, frozen=True):
     """A lesson with its steps. It starts with a graph, by its path below the presets, or with a picture."""
 
     id: str

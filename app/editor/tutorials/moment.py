@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 from ...graph import Graph, Group, Port, Unknown
 
@@ -13,8 +14,7 @@ if TYPE_CHECKING:
     from ...graph import Item
 
 
-@dataclass(frozen=True)
-class Moment:
+class Moment(Struct, frozen=True):
     """What a step may ask about, at its beginning and now."""
 
     graph: Graph

@@ -7,7 +7,8 @@ A drag solves this for the value that its grip stands for, the others stay.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 from ...graph import Port
 from .geometry import Point
@@ -24,8 +25,7 @@ LEAST_SCALE = 1e-3
 """No drag makes a scale smaller: with 0 the way back would be lost."""
 
 
-@dataclass(frozen=True)
-class RectangleGizmo:
+class RectangleGizmo(Struct, frozen=True):
     """Two opposite corners, as fractions of a frame of which the picture shows `origin` to `origin` + `size`."""
 
     top_left: Port
@@ -93,8 +93,7 @@ class RectangleGizmo:
         return GizmoDrag({self.top_left: (left, top), self.bottom_right: (right, bottom)}, guides)
 
 
-@dataclass(frozen=True)
-class TransformGizmo:
+class TransformGizmo(Struct, frozen=True):
     """The frame of a picture, as a node moves, scales, turns and skews it about a pivot."""
 
     node: str

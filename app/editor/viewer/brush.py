@@ -3,10 +3,10 @@ document."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import Literal
 
 from halation.nodes import PAINT_STROKES, PaintTool, Row
+from msgspec import Struct, field
 
 from .geometry import Point
 
@@ -17,8 +17,7 @@ LEAST_SIZE, MOST_SIZE = 0.001, 4.0
 """The range of the size of a brush, as fractions of the height."""
 
 
-@dataclass
-class PaintBrush:
+class PaintBrush(Struct):
     """What the next stroke is like. Lengths are fractions of the height of the picture, places of the picture."""
 
     is_on: bool = True

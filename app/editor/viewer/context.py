@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..toolkit.context import PanelContext
@@ -23,8 +22,7 @@ if TYPE_CHECKING:
     from .state import ViewerState
 
 
-@dataclass(frozen=True)
-class ViewerContext(PanelContext):
+class ViewerContext(PanelContext, frozen=True):
     """The collaborators of the viewer and the scopes."""
 
     stage: DocumentStage

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from typing import Literal
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from ...renderer.viewing import look
 from ...renderer.viewing.look import Look
@@ -20,8 +22,7 @@ GRID_FROM = 8.0
 Grip = Literal["", "line", "angle", "move", "n", "s", "w", "e", "nw", "ne", "sw", "se"]
 
 
-@dataclass(frozen=True)
-class Sight:
+class Sight(Struct, frozen=True):
     """A picture seen through a panel.
 
     `origin` is the panel's left top on the screen, `density` how many panel pixels a screen unit has (2 on some

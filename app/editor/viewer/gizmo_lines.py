@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
+from msgspec.structs import replace
 
 from ..theme.style import u32, ui_scale
 from .box_gizmos import RectangleGizmo

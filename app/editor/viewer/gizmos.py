@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Protocol
 
 from halation.nodes import Plain
+from msgspec import Struct
 
 from ...graph import Port
 from .geometry import Point
@@ -19,8 +19,7 @@ from .grips import GripShape
 from .snapping import SnapGuide, Snapping
 
 
-@dataclass(frozen=True)
-class GizmoGrip:
+class GizmoGrip(Struct, frozen=True):
     """A point that can be dragged. `part` tells the grips of one gizmo apart; `port` is the value that it changes."""
 
     port: Port
@@ -34,8 +33,7 @@ class GizmoGrip:
         return f"{self.port} {self.part}".rstrip()
 
 
-@dataclass(frozen=True)
-class GizmoOutline:
+class GizmoOutline(Struct, frozen=True):
     """A line that belongs to a gizmo: through points, or a circle. Those of grips appear when the mouse is over it."""
 
     points: tuple[Point, ...]
@@ -46,8 +44,7 @@ class GizmoOutline:
     is_closed: bool = False
 
 
-@dataclass(frozen=True)
-class GizmoDrag:
+class GizmoDrag(Struct, frozen=True):
     """What a drag makes of the values, and the lines to which it snapped."""
 
     values: Mapping[Port, Plain]
@@ -77,8 +74,7 @@ class Gizmo(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class PlaceGizmo:
+class PlaceGizmo(Struct, frozen=True):
     """A position, or a length across and down from a point."""
 
     port: Port
@@ -116,8 +112,7 @@ class PlaceGizmo:
         return GizmoDrag({self.port: (x, y)}, guides)
 
 
-@dataclass(frozen=True)
-class JoiningLines:
+class JoiningLines(Struct, frozen=True):
     """Lines that join positions, which have grips of their own."""
 
     lines: tuple[tuple[Point, ...], ...]
@@ -134,8 +129,7 @@ class JoiningLines:
         return GizmoDrag({})
 
 
-@dataclass(frozen=True)
-class SizeGizmo:
+class SizeGizmo(Struct, frozen=True):
     """A length, as the radius of a circle around a point."""
 
     port: Port
@@ -179,8 +173,7 @@ class SizeGizmo:
         return GizmoDrag({self.port: round(min(max(length, low), self.high), 5)})
 
 
-@dataclass(frozen=True)
-class TurnGizmo:
+class TurnGizmo(Struct, frozen=True):
     """An angle, as a dial around a point."""
 
     port: Port

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 from halation.nodes import ItemSet, Plain, Value, is_length, unit_factor
+from msgspec import Struct
 
 from ...graph import Port, Unknown, signature
 from ...graph.named_items import join_path
@@ -40,8 +40,7 @@ _FIRST_DIRECTION, _NEXT_DIRECTION = 30.0, 40.0
 """Where lengths have their grips, in degrees clockwise from the right: below the level, where few dials point."""
 
 
-@dataclass(frozen=True)
-class PictureFrame:
+class PictureFrame(Struct, frozen=True):
     """The picture that gizmos lie on."""
 
     size: Point
@@ -50,8 +49,7 @@ class PictureFrame:
     """How many of them a pixel of the screen at UI scale 1 is."""
 
 
-@dataclass(frozen=True)
-class _ActiveNode:
+class _ActiveNode(Struct, frozen=True):
     """The active node, with what gizmos need of it."""
 
     id: str

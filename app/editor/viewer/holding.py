@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
+
+from msgspec import Struct
 
 from ...authoring.commands import SetValue, SetValues
 from ...language.translation import translate
@@ -75,8 +76,7 @@ DOUBLINGS = 3.0
 """How often the depth of a light doubles for a drag up across the whole panel."""
 
 
-@dataclass(frozen=True)
-class HandleTarget:
+class HandleTarget(Struct, frozen=True):
     """What a press of the mouse button would grab."""
 
     kind: HoldKind
@@ -156,8 +156,7 @@ def _light(
     return None
 
 
-@dataclass
-class MouseHold:
+class MouseHold(Struct):
     """A drag, from press to release of the mouse button."""
 
     context: ViewerContext

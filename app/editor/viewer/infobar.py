@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from halation.nodes import Kind
 from imgui_bundle import imgui
+from msgspec import Struct
 
 from ...color.management import ColorManager
 from ...color.primaries import REC709_LUMINANCE, find_luminance_weights
@@ -29,8 +29,7 @@ _LETTERS = "RGBA"
 _CHANNEL_COLORS: tuple[RGB, ...] = ((0.93, 0.36, 0.36), (0.30, 0.72, 0.36), (0.36, 0.54, 0.98))
 
 
-@dataclass(frozen=True)
-class Word:
+class Word(Struct, frozen=True):
     """A piece of text in the line, and its color; without text it is a square of that color."""
 
     text: str

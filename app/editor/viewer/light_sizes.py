@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from halation.nodes import LightKind
+from msgspec import Struct
 
 from .geometry import Point, Sight
 from .lamp_outlines import WIDEST_CONE, cone, half_axes_of
@@ -22,8 +22,7 @@ LEAST = 0.001
 handle any more."""
 
 
-@dataclass(frozen=True)
-class SizeHandle:
+class SizeHandle(Struct, frozen=True):
     """A field of a light, shown by how far one point of the screen is from another.
 
     `length` is what the distance stands for: a length in the scene, or the tangent of half a cone.

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from halation.nodes import LIGHTS, CameraModel, ItemSet, Kind, Light, LightKind, light_of
+from msgspec import Struct
 
 from ...authoring.commands import AddItem, RemoveItem, SetValues
 from ...graph import Port, Unknown, signature
@@ -40,8 +40,7 @@ _AIMED = (LightKind.SPOT, LightKind.RECTANGLE, LightKind.DISC, LightKind.TUBE)
 """The lights at a place that have a direction."""
 
 
-@dataclass(frozen=True)
-class Lamp:
+class Lamp(Struct, frozen=True):
     """A light before the camera: its value, its name there, and where it is as a fraction of the picture.
 
     A sun is everywhere: `at` is the middle of the picture, and the depth 0.

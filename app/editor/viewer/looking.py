@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
 from halation.nodes import Kind
+from msgspec.structs import replace
 
 from ...color.display import to_display
 from ...color.management import ColorManager, get_default_color_manager

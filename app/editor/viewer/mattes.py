@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from halation.nodes import Matte, float_bits, pick_ids, toggle_name
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
+from msgspec import Struct
 
 from ...authoring.commands import SetValue
 from ...graph import Port
@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     from .geometry import Point, Sight
 
 
-@dataclass(frozen=True)
-class MatteHit:
+class MatteHit(Struct, frozen=True):
     """The object under the pointer: its id, and its name if the file has one; `on` if it is picked."""
 
     port: Port

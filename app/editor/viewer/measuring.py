@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import colorsys
-from dataclasses import dataclass
 
 import numpy as np
+from msgspec import Struct
 
 Array = np.ndarray
 
 
-@dataclass(frozen=True)
-class Statistics:
+class Statistics(Struct, frozen=True):
     """Statistics per channel, of finite numbers; `wrong` counts pixels with other numbers."""
 
     low: tuple[float, ...]

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
 from halation.nodes import BuiltInScene, CameraModel, Node, SceneFile, orbit_camera
+from msgspec import Struct
+from msgspec.structs import replace
 
 from ...authoring.commands import ReplaceGraph
 from ...graph import Graph, Item, Port
@@ -41,8 +42,7 @@ _SURROUNDING = 0.99
 """An object that covers this fraction of the scene in x and y is a floor or backdrop, which framing leaves out."""
 
 
-@dataclass(frozen=True)
-class Orbit:
+class Orbit(Struct, frozen=True):
     """An orbit camera: angles in degrees, focal length in mm."""
 
     target: Place

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 SLOW = 0.060
 """Seconds per picture above which the next one is coarser: below 15 pictures a second a drag feels slow."""
@@ -32,8 +32,7 @@ def choose_start_scale(finest: float, scale: float, seconds: float) -> float:
     return coarsen_scale(finest, finest * part, seconds * part * part)
 
 
-@dataclass
-class Pace:
+class Pace(Struct):
     """The scale of pictures over time: coarser while dragging is slow, the chosen one as soon as it is over.
 
     Within one drag it only falls, so that the picture does not flicker between scales.
@@ -64,8 +63,7 @@ class Pace:
             self.scale = coarsen_scale(self._finest, scale, seconds)
 
 
-@dataclass
-class PictureTimer:
+class PictureTimer(Struct):
     """Measures how long pictures take, from what is shown in each frame of the window."""
 
     _started: float | None = None

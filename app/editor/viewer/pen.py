@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Set
-from dataclasses import dataclass, field
 
 from halation.nodes import Row
+from msgspec import Struct, field
 
 from .geometry import Point
 
 _NONE: tuple[str, Set[int]] = ("", frozenset())
 
 
-@dataclass
-class SplinePen:
+class SplinePen(Struct):
     """The state of drawing splines with the mouse."""
 
     is_drawing: bool = False

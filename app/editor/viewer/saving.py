@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from halation.nodes import Kind
+from msgspec.structs import replace
 
 from ...color.transforms import decode_srgb
 from ...language.translation import translate

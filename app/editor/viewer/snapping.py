@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Literal
+
+from msgspec import Struct
 
 from .geometry import Point
 
@@ -15,8 +16,7 @@ FRACTIONS = (0.0, 1.0 / 3.0, 0.5, 2.0 / 3.0, 1.0)
 """Lines that points snap to, as fractions of the width and the height of the picture."""
 
 
-@dataclass(frozen=True)
-class SnapGuide:
+class SnapGuide(Struct, frozen=True):
     """A line across the picture at which something snapped: `x` is upright, `y` level."""
 
     axis: Literal["x", "y"]
@@ -24,8 +24,7 @@ class SnapGuide:
     """In pixels of the picture."""
 
 
-@dataclass(frozen=True)
-class Snapping:
+class Snapping(Struct, frozen=True):
     """How a drag snaps in a picture. All lengths are pixels of the full picture."""
 
     size: Point

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal, cast
 
@@ -23,6 +22,7 @@ from halation.nodes import (
     place_roto_shapes,
     split_points,
 )
+from msgspec import Struct
 
 from ...graph import Port
 from ...graph.named_items import join_path
@@ -50,8 +50,7 @@ _NEAR_CURVE = 5.0
 """The distance at which a curve is hit."""
 
 
-@dataclass(frozen=True)
-class SplineOutline:
+class SplineOutline(Struct, frozen=True):
     """A spline of the active node, on a picture of a size in pixels: a shape among others, or a value of its own."""
 
     points_port: Port
@@ -101,8 +100,7 @@ class SplineOutline:
         return [self.to_picture(curve_point(curve, step / STEPS)) for step in range(STEPS + 1)]
 
 
-@dataclass(frozen=True)
-class SplineTarget:
+class SplineTarget(Struct, frozen=True):
     """A part of a shape under the mouse."""
 
     outline: SplineOutline

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
+
+from msgspec import Struct, field
 
 from ...authoring.preview.large_files import LargeFiles
 from .brush import PaintBrush
@@ -34,8 +35,7 @@ Box = tuple[float, float, float, float]
 """Left, top, right, bottom as fractions of the picture."""
 
 
-@dataclass
-class ViewerState:
+class ViewerState(Struct):
     """One viewer. Lengths are panel pixels, `zoom` panel pixels per picture pixel at full size; 0 fits the panel."""
 
     zoom: float = 0.0

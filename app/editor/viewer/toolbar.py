@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
+from msgspec import Struct
 
 from ...color.display import NO_LOOK, NO_VIEW, VIDEO_VIEW, list_displays, list_looks, list_views
 from ...language.translation import mark, translate
@@ -42,8 +42,7 @@ _GAP, _APART = 2.0, 10.0
 Draw = Callable[[], object]
 
 
-@dataclass(frozen=True)
-class _ViewerTool:
+class _ViewerTool(Struct, frozen=True):
     """How wide a tool is in the row, how it is drawn there, and how in the menu of what does not fit."""
 
     width: float

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from halation.nodes import Kind, Plain
 from imgui_bundle import imgui
+from msgspec import Struct
+from msgspec.structs import replace
 
 from ...authoring.commands import SetValue
 from ...graph import OUTPUTS, Port
@@ -57,8 +58,7 @@ _CATCH = (
 )
 
 
-@dataclass(frozen=True)
-class _FrameImages:
+class _FrameImages(Struct, frozen=True):
     """The pictures of this frame."""
 
     a: DisplayedImage | None

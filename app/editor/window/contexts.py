@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 from ..actions.context import EditContext, ViewSettingsContext
 from ..actions.edits import EDITS
@@ -40,8 +40,7 @@ from ..workflows.flipbook import FLIPBOOK, FlipbookPlayer
 from .editor import Editor
 
 
-@dataclass(frozen=True)
-class Contexts:
+class Contexts(Struct, frozen=True):
     """One context for each panel, and the workflows that several of them share."""
 
     documents: DocumentWorkflow

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
+
+from msgspec import field
 
 from ..canvas.view import CanvasView
 from ..code.state import CodeState
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from ..shared.action import Scope
 
 
-@dataclass
 class Editor(Services):
     """What all panels share, and the state of each panel."""
 

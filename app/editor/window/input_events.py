@@ -26,18 +26,17 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import cache, partial
 from types import MappingProxyType
 from typing import Any, Literal
 
 from imgui_bundle import imgui
+from msgspec import Struct
 
 import glfw  # isort: skip
 
 
-@dataclass(frozen=True)
-class InputEvent:
+class InputEvent(Struct, frozen=True):
     """One event of the window system."""
 
     modifiers: frozenset[imgui.Key]
@@ -64,8 +63,7 @@ class InputEvent:
     """For a button that goes down, seconds since it went down before."""
 
 
-@dataclass
-class _Share:
+class _Share(Struct):
     """What the interface gets in one frame."""
 
     has_pressed: bool = False
@@ -87,8 +85,7 @@ class _Share:
         self.pointer = event.pointer or self.pointer
 
 
-@dataclass(frozen=True)
-class _Focus:
+class _Focus(Struct, frozen=True):
     """What decides where a key goes, and what is about to change that."""
 
     takes_text: bool

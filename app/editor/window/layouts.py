@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 
 from imgui_bundle import hello_imgui, imgui
+from msgspec import Struct
 
 from ..shared.window_commands import LayoutName, PanelTitle
 from ..toolkit.labels import make_label
@@ -18,8 +18,7 @@ _NODE = int(imgui.internal.DockNodeFlagsPrivate_.no_close_button.value)
 """Tabs can be closed, not whole docks."""
 
 
-@dataclass(frozen=True)
-class DockLayout:
+class DockLayout(Struct, frozen=True):
     """How the window is split into docks, and which panels are in which dock."""
 
     splits: tuple[tuple[str, str, imgui.Dir, float], ...]

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 from imgui_bundle import imgui
+from msgspec import Struct, field
 
 from ..actions import MENUS
 from ..shared.action import Action, ListedAction
@@ -13,8 +12,7 @@ from ..toolkit.buttons import ActionSurface, entry
 from ..toolkit.labels import translate_label
 
 
-@dataclass
-class _Menu:
+class _Menu(Struct):
     """Actions and submenus in the order in which they appear."""
 
     entries: dict[str, ListedAction | _Menu] = field(default_factory=dict)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
+from typing import Any
 
 from imgui_bundle import hello_imgui  # noqa: F401  (first: both must use the same window library)
 
@@ -26,31 +27,35 @@ def has_visible_window() -> bool:
     return os.environ.get("HALATION_WINDOW") != "none"
 
 
-def best_version() -> tuple[int, int]:
-    """The newest OpenGL of ours that a window here can have. Raises DeviceError.
+def open_hidden_window(size: tuple[int, int], title: str) -> tuple[Any, tuple[int, int]]:
+    """A window that is not shown yet and has no frame, with the newest OpenGL of ours that a window here can have.
 
-    A refused version would spoil every later attempt of the window library in this process, so a hidden window is
-    asked first.
+    Also returns that version, for the windows that follow: a refused one spoils every later attempt of the window
+    library, so it begins anew after each. The library stays open. Raises DeviceError.
     """
-    visible = has_visible_window()
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        if not (glfw.init() if visible else needs_no_display()):
-            raise DeviceError(_NO_WINDOW)
-        try:
-            version = next(filter(_opens, _VERSIONS), None)
-        finally:
-            glfw.default_window_hints()
-            glfw.terminate()
-    if version is None:
-        raise DeviceError(
-            translate(
-                "no window with OpenGL 4.1 can be opened here: {advice}; 'halation render' may still work",
-                advice=suggest_driver(),
-            )
+    for version in _VERSIONS:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            if not (glfw.init() if has_visible_window() else needs_no_display()):
+                raise DeviceError(_NO_WINDOW)
+            window = _create_window(size, title, version)
+        if window:
+            return window, version
+        glfw.terminate()
+    raise DeviceError(
+        translate(
+            "no window with OpenGL 4.1 can be opened here: {advice}; 'halation render' may still work",
+            advice=suggest_driver(),
         )
-    if not visible:
-        needs_no_display()
+    )
+
+
+def find_version() -> tuple[int, int]:
+    """The newest OpenGL of ours that a window here can have. Raises DeviceError."""
+    window, version = open_hidden_window((16, 16), "")
+    glfw.destroy_window(window)
+    if not has_visible_window():
+        needs_no_display()  # the hints of the window that was tried are gone
     return version
 
 
@@ -63,14 +68,16 @@ def needs_no_display() -> bool:
     return True
 
 
-def _opens(version: tuple[int, int]) -> bool:
+def _create_window(size: tuple[int, int], title: str, version: tuple[int, int]) -> Any:
+    """Create a hidden window without a frame. Returns a null pointer where there is no such OpenGL."""
     glfw.window_hint(glfw.VISIBLE, False)
+    glfw.window_hint(glfw.DECORATED, False)
+    glfw.window_hint(glfw.RESIZABLE, False)
+    glfw.window_hint(glfw.FOCUS_ON_SHOW, False)
     glfw.window_hint(glfw.CONTEXT_VERSION_MAJOR, version[0])
     glfw.window_hint(glfw.CONTEXT_VERSION_MINOR, version[1])
     glfw.window_hint(glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE)
     glfw.window_hint(glfw.OPENGL_FORWARD_COMPAT, True)
-    window = glfw.create_window(16, 16, "", None, None)
-    if not window:
-        return False
-    glfw.destroy_window(window)
-    return True
+    window = glfw.create_window(*size, title, None, None)
+    glfw.default_window_hints()
+    return window

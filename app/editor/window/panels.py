@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Protocol
+
+from msgspec import Struct
 
 from ..browser.browser import FileBrowser
 from ..canvas.canvas import Canvas
@@ -41,8 +42,7 @@ class Panel(Protocol):
     def draw(self) -> None: ...
 
 
-@dataclass(frozen=True)
-class Docked:
+class Docked(Struct, frozen=True):
     """A panel with its title and the dock it starts in. `bare` panels draw up to their borders."""
 
     title: PanelTitle

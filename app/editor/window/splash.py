@@ -15,6 +15,7 @@ import glfw  # isort: skip
 
 from ...language.translation import translate
 from ...version import VERSION
+from .opengl import open_hidden_window
 
 _SIZE = (420, 130)
 _FONTS = Path(imgui_bundle.__file__).parent / "assets" / "fonts" / "Roboto"
@@ -28,24 +29,18 @@ _GROUND, _TEXT, _DIM, _LINE = (0.114, 0.114, 0.125), (0.894, 0.894, 0.906), (0.6
 
 
 class Splash:
-    """The window. It stays until `close`, with its last picture, while another window comes up beside it."""
+    """The window. It stays until `close`, with its last picture, while another window comes up beside it.
 
-    def __init__(self, version: tuple[int, int]) -> None:
-        glfw.init()
-        glfw.default_window_hints()
-        glfw.window_hint(glfw.VISIBLE, False)
-        glfw.window_hint(glfw.DECORATED, False)
-        glfw.window_hint(glfw.RESIZABLE, False)
-        glfw.window_hint(glfw.FOCUS_ON_SHOW, False)
-        glfw.window_hint(glfw.CONTEXT_VERSION_MAJOR, version[0])
-        glfw.window_hint(glfw.CONTEXT_VERSION_MINOR, version[1])
-        glfw.window_hint(glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE)
-        glfw.window_hint(glfw.OPENGL_FORWARD_COMPAT, True)
+    `version` is the OpenGL that it has, and that windows can have here. Raises DeviceError where none opens.
+    """
+
+    def __init__(self) -> None:
+        self._window: Any
+        self._window, self.version = open_hidden_window(_SIZE, "Halation starts")
         left, top, width, height = glfw.get_monitor_workarea(glfw.get_primary_monitor())
         self._scale = 1.0 if sys.platform == "darwin" else glfw.get_monitor_content_scale(glfw.get_primary_monitor())[0]
         size = round(_SIZE[0] * self._scale), round(_SIZE[1] * self._scale)
-        self._window: Any = glfw.create_window(*size, "Halation starts", None, None)
-        glfw.default_window_hints()
+        glfw.set_window_size(self._window, *size)
         glfw.set_window_pos(self._window, left + (width - size[0]) // 2, top + (height - size[1]) // 2)
         glfw.make_context_current(self._window)
         self._context = imgui.create_context()

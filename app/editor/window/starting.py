@@ -8,7 +8,7 @@ from pathlib import Path
 from threading import Thread
 
 from ...resources.sandbox import Sandbox
-from .opengl import best_version, has_visible_window
+from .opengl import find_version, has_visible_window
 from .splash import Splash
 
 
@@ -20,8 +20,8 @@ def start_editor(path: Path | None, bindings: Mapping[str, str], sandbox: Sandbo
     """
     loading = Thread(target=import_module, args=(".opening", __package__), name="loading", daemon=True)
     loading.start()  # most of a start are imports: they go on while the system opens a window
-    version = best_version()
-    splash = Splash(version) if has_visible_window() else None
+    splash = Splash() if has_visible_window() else None
+    version = splash.version if splash is not None else find_version()
     if splash is not None:
         splash.follow(loading)
     loading.join()

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
+
+from msgspec import Struct
 
 from ...authoring.commands import EmbedCode
 from ...language.translation import translate
@@ -33,8 +34,7 @@ class CodeEditor(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class CodeFileWorkflow:
+class CodeFileWorkflow(Struct, frozen=True):
     """Reads and writes files with the code of nodes, and asks where both sides have changed."""
 
     session: Session

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 from ...authoring.document_pictures import DocumentPictures
 from ...errors import HalationError
@@ -43,8 +44,7 @@ def _do_nothing() -> None:
     """An answer that changes nothing."""
 
 
-@dataclass(frozen=True)
-class LeavingLabels:
+class LeavingLabels(Struct, frozen=True):
     """What the answers are called when unsaved work is about to be left: with saving it, and without."""
 
     saving: str
@@ -55,8 +55,7 @@ def _label_opening() -> LeavingLabels:
     return LeavingLabels(translate("Save and open"), translate("Open without saving"))
 
 
-@dataclass(frozen=True)
-class DocumentWorkflow:
+class DocumentWorkflow(Struct, frozen=True):
     """The actions of the File menu. Each one that would lose work asks first."""
 
     session: Session

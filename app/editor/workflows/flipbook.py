@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
+
+from msgspec import Struct
 
 from ...authoring.flipbook import Flipbook, FlipbookStrip
 from ...language.translation import translate
@@ -33,8 +34,7 @@ class FlipbookScreen(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class FlipbookPlayer:
+class FlipbookPlayer(Struct, frozen=True):
     """Puts flipbooks on the stage, and the document back."""
 
     stage: DocumentStage

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from halation.nodes import Kind
+from msgspec import Struct, field
 
 from ...compiler import Plan, Upload
 from ...compiler.knobs import FRAME
@@ -31,8 +31,7 @@ a color of middle gray."""
 Checks = list[Any]
 
 
-@dataclass(eq=False)
-class VariantSamples:
+class VariantSamples(Struct, eq=False):
     """The samples of one variant: at rest, along each knob, at checks, and by pairs of knobs."""
 
     rest: Sample
@@ -63,8 +62,7 @@ class VariantSamples:
         return len({len(sample.slots[place].numbers) for sample in samples}) == 1
 
 
-@dataclass
-class SharedParts:
+class SharedParts(Struct):
     """Parts by what they are, numbered in the order in which they came."""
 
     load: LoadFunction

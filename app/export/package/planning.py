@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from halation.nodes import Value
+from msgspec import Struct
 
 from ...compiler import Memory, Plan, Planner, Request, Target
 from ...compiler.knobs import FRAME, GraphSampler, Knob, Point, find_knob_controls
@@ -39,8 +39,7 @@ CHECKS = 4
 """Points at which all knobs are elsewhere, to see how the curves of several knobs are joined."""
 
 
-@dataclass(eq=False)
-class Phase:
+class Phase(Struct, eq=False):
     """The first frame, or all frames after it: what nodes remember, and samples of the graph with these memories."""
 
     memories: Mapping[Port, Memory]

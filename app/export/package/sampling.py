@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 
 import numpy as np
 from halation.nodes import Uniform
-from msgspec import Struct
+from msgspec import Struct, field
 
 from ...compiler import Plan
 from ...compiler.knobs import Knob, Point
@@ -114,8 +113,7 @@ def _is_whole(value: Uniform) -> bool:
     return all(isinstance(part, int) for part in (value if isinstance(value, tuple) else (value,)))
 
 
-@dataclass
-class KnobSampler:
+class KnobSampler(Struct):
     """Samples one knob while all others rest at `base`."""
 
     take: Callable[[Point], Sample | None]

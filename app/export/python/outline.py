@@ -5,10 +5,9 @@ from __future__ import annotations
 import builtins
 import keyword
 import re
-from dataclasses import dataclass, field
 
 from halation.nodes import Node, Size, Temporal
-from msgspec import Struct
+from msgspec import Struct, field
 
 from ...compiler import Ref, Request, graph_library
 from ...compiler.ir import Builder
@@ -44,8 +43,7 @@ class ScriptCall(Struct, frozen=True):
     arguments: tuple[str, ...]
 
 
-@dataclass
-class ScriptOutline:
+class ScriptOutline(Struct):
     """A script as data: the calls in order, tables of animated values by name, inputs, and what is returned."""
 
     size: Size

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from functools import cached_property
 
-from msgspec import Struct
+from msgspec import Struct, field
 
 from ...errors import GraphError, describe_owner
 from ..engine_text import quote_text, write_name
@@ -49,8 +48,7 @@ def write_effect(package: Package, order: ExportOrder, stem: str) -> Effect:
     return _EffectWriter(package, order, stem).write()
 
 
-@dataclass
-class _EffectWriter:
+class _EffectWriter(Struct, dict=True):
     package: Package
     order: ExportOrder
     stem: str

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from msgspec import Struct, field
 
 from ..engine_text import write_float
 from ..package.curves import Record
@@ -21,8 +21,7 @@ _FOUR = 4
 """Numbers in each cell: the channels of a pixel."""
 
 
-@dataclass
-class NumberPicture:
+class NumberPicture(Struct):
     """The slots that controls change, as cells of four numbers, and the code that computes them."""
 
     slots: Sequence[Record]

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 import numpy as np
-from msgspec import Struct
+from msgspec import Struct, field
 
 from ...errors import GraphError, describe_owner
 from ..package import Package
@@ -26,8 +24,7 @@ class EffectPass(Struct, frozen=True):
     targets: tuple[str, ...] = ()
 
 
-@dataclass
-class EffectParts:
+class EffectParts(Struct):
     """The parts of an effect so far, in order."""
 
     package: Package

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 
 import numpy as np
+from msgspec import Struct, field
 
 from ...media.pictures.stored import encode_png
 
@@ -18,8 +18,7 @@ _LONGEST = 16384
 """Rows that a texture may have in Direct3D 11 and later, and in Vulkan on desktops."""
 
 
-@dataclass
-class PackedPictures:
+class PackedPictures(Struct):
     """The files of an effect, named by its stem and a number, and the code that reads a number of each."""
 
     stem: str

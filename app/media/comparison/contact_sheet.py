@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
 import OpenImageIO as oiio
+from msgspec import Struct
 
 from ...color.display import to_display
 from ...color.transforms import Array, decode_srgb, encode_srgb
@@ -178,8 +178,7 @@ def write_sheet(path: str | Path, light: Array, description: str = "", *, sandbo
     write_atomically(path, encode, pixels.nbytes, sandbox=sandbox)
 
 
-@dataclass(frozen=True)
-class _SheetLayout:
+class _SheetLayout(Struct, frozen=True):
     """The layout of a sheet, in (left, top) of pixels. `counts` are pictures by group, `cell` is the size of one."""
 
     counts: Mapping[str, int]

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import inf, log10, nan
 
 import numpy as np
 import OpenImageIO as oiio
+from msgspec import Struct
 
 from ...color.transforms import Array, decode_srgb, encode_srgb, to_float, to_three_channels
 from ...errors import UsageError
@@ -22,8 +22,7 @@ _BROKEN_COLOR = (1.0, 0.0, 1.0)
 """Magenta for NaN and infinity, which no heat map has."""
 
 
-@dataclass(frozen=True)
-class PictureDifference:
+class PictureDifference(Struct, frozen=True):
     """The difference of a picture from the expected one.
 
     `max_abs` and `rms` are in the units of the pixels, over all channels. `max_rel` is the largest difference relative

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from halation.nodes import Kind
+from msgspec import Struct
 
 from ...color.transforms import Array
 from ...resources.sandbox import Sandbox
@@ -16,8 +16,7 @@ from .contact_sheet import make_sheet, show_data, show_light
 from .metrics import amplify_difference
 
 
-@dataclass(frozen=True)
-class PicturePair:
+class PicturePair(Struct, frozen=True):
     """A picture before and after, [h, w, c]; one of them may be None. `view` shows light."""
 
     before: Array | None

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import replace
 
 Array = np.ndarray
 Color = tuple[float, float, float]
@@ -24,8 +25,7 @@ _SEGMENTS = 96
 # All other numbers in this file are the places, sizes and materials of the sample scenes, chosen by eye.
 
 
-@dataclass(frozen=True, eq=False)
-class MeshPart:
+class MeshPart(Struct, frozen=True, eq=False):
     """One object: positions, unit normals [n, 3], triangles [m, 3], uvs [n, 2] and its material. z is up."""
 
     positions: Array

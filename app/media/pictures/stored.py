@@ -9,12 +9,12 @@ from __future__ import annotations
 import shutil
 import tempfile
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
 from halation.nodes import Kind
+from msgspec import Struct
 
 from ...color.display import to_display
 from ...color.transforms import Array, to_three_channels
@@ -31,8 +31,7 @@ _MAKER = ("halation:renderer", "halation:driver", "halation:version")
 _FLOATS = ("half", "float", "double")
 
 
-@dataclass(frozen=True)
-class StoredPart:
+class StoredPart(Struct, frozen=True):
     """One part of a file: [h, w, c] of float32 over its display window. Integers fill 0..1, alpha is as stored.
 
     If it `is_encoded`, it was stored as integers, which a display shows as they are.

@@ -6,19 +6,18 @@ Every encoder runs on one thread and leaves out dates and random numbers: the sa
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 
 from halation.nodes import Size
+from msgspec import Struct
 
 from ...errors import UsageError
 from ...resources.suggestions import find_near_names
 from .library import HOW_TO_INSTALL, load_pyav
 
 
-@dataclass(frozen=True)
-class VideoCodec:
+class VideoCodec(Struct, frozen=True):
     """An encoder. `pixels` are the pixel formats for 8 bits and for more; `alpha` means that transparency is kept."""
 
     encoder: str

@@ -15,7 +15,6 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
 from itertools import islice
@@ -23,6 +22,7 @@ from types import MappingProxyType
 from typing import Any
 
 from halation.nodes import Size
+from msgspec import Struct, field
 
 from ...errors import InputError
 from ...resources.sandbox import Sandbox
@@ -49,16 +49,14 @@ _ATTACHED_PICTURE = 1024
 """The flag of a cover picture: AV_DISPOSITION_ATTACHED_PIC of FFmpeg."""
 
 
-@dataclass(frozen=True)
-class KeyFrame:
+class KeyFrame(Struct, frozen=True):
     """A packet from which decoding can begin: its time of presentation, and its index among all packets."""
 
     time: int
     place: int
 
 
-@dataclass(frozen=True)
-class FrameIndex:
+class FrameIndex(Struct, frozen=True):
     """The places of frames: `times` of presentation in the units of the stream, `places` of packets by their two times.
 
     Without `times`, frames can only be counted from the first one.
@@ -74,8 +72,7 @@ class FrameIndex:
         return max(bisect_right(self.keys, time, key=lambda key: key.time) - 1, 0)
 
 
-@dataclass(frozen=True)
-class VideoInfo:
+class VideoInfo(Struct, frozen=True):
     """The facts of a video.
 
     `pixels` is FFmpeg's name of the pixel format, `bits` those of a channel. `matrix`, `range`, `transfer` and

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from msgspec import Struct
 
 from ...errors import InputError
 from .index import VideoInfo
@@ -41,8 +41,7 @@ _UNPACKED = {
 """Formats with several channels in one plane -> the format with the same numbers and a plane each."""
 
 
-@dataclass(frozen=True)
-class DecodedFrame:
+class DecodedFrame(Struct, frozen=True):
     """R'G'B' [h, w, 3] of a frame, as 8- or 16-bit integers if the file has these, else as floats; straight alpha."""
 
     rgb: Array

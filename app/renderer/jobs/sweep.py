@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from itertools import product
 from math import ceil
 from pathlib import Path
 
 import numpy as np
 from halation.nodes import Kind, Socket
-from msgspec import structs
+from msgspec import Struct, structs
 
 from ...errors import UsageError
 from ...graph import OUTPUTS, Graph, Port
@@ -33,8 +32,7 @@ _SHEET_ASPECT = 1.7
 """Width over height of a sheet whose cells wrap: close to a screen of 16:9, with some room for labels."""
 
 
-@dataclass(frozen=True)
-class SweepStep:
+class SweepStep(Struct, frozen=True):
     """One value of an axis: as the user typed it, and a function that sets it in a graph."""
 
     text: str
@@ -42,8 +40,7 @@ class SweepStep:
     frame: int | None = None
 
 
-@dataclass(frozen=True)
-class SweepAxis:
+class SweepAxis(Struct, frozen=True):
     """What varies along one side of a sheet: `blur.sigma`, a control, or the frame; cells show its `label`."""
 
     name: str
@@ -51,8 +48,7 @@ class SweepAxis:
     steps: tuple[SweepStep, ...]
 
 
-@dataclass(frozen=True)
-class SweepCell:
+class SweepCell(Struct, frozen=True):
     """One picture of a sheet: a step of every axis, the graph with their values, and its frame."""
 
     steps: tuple[tuple[SweepAxis, SweepStep], ...]
@@ -70,8 +66,7 @@ class SweepCell:
         return ",".join(f"{axis.name}={_format_step(step.text, axis.name == FRAME)}" for axis, step in self.steps)
 
 
-@dataclass(frozen=True)
-class SweepRequest:
+class SweepRequest(Struct, frozen=True):
     """What to render of each graph, and how it is shown. `width` is that of a cell in pixels, 0 for the picture's."""
 
     request: RenderRequest
@@ -85,13 +80,12 @@ class SweepRequest:
     title: str = ""
 
 
-@dataclass(frozen=True)
-class SweepSheet:
+class SweepSheet(Struct, frozen=True):
     """The sheet as light of the display, its cells, and the files that were written beside it."""
 
     light: Array
     cells: tuple[SweepCell, ...]
-    files: tuple[Path, ...] = field(default=())
+    files: tuple[Path, ...] = ()
 
 
 def list_cells(graph: Graph, axes: Sequence[SweepAxis], frame: int) -> tuple[SweepCell, ...]:

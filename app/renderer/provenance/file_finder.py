@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
 from halation.nodes import Node
 from halation.presets import paths as presets
-from msgspec import structs
+from msgspec import Struct, structs
 
 from ...compiler.lowering.references import CONFIG, find_path_texts
 from ...errors import InputError, UsageError
@@ -28,8 +28,7 @@ the common folder is rarely moved as a whole, which is what relative paths are f
 State = Literal["same", "changed", "missing"]
 
 
-@dataclass(frozen=True)
-class LocatedFile:
+class LocatedFile(Struct, frozen=True):
     """Where a recorded file is now and its hash; both are "" if it is missing. `path` of a sequence is its pattern."""
 
     recorded: RecordedFile

@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 import shlex
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path, PurePath
 from typing import Any, cast
 
 from halation.nodes import Node
+from msgspec import Struct
 
 from ... import document, media
 from ...errors import InputError
@@ -25,8 +25,7 @@ _LAYERED = re.compile(r"(?P<name>.*?\.\w{1,5}):(?P<layer>.+)")
 _SUPPORTED_FORMATS = "EXR and PNG hold what is needed, and so do TIFF and JPEG"
 
 
-@dataclass(frozen=True)
-class RecordedFile:
+class RecordedFile(Struct, frozen=True):
     """A file that was read, by the input or node that read it: see `SourceFile`.
 
     Of a sequence, `frames` of `pattern` were read; `sequence_digest` is the hash of all of them.
@@ -41,8 +40,7 @@ class RecordedFile:
     sequence_digest: str = ""
 
 
-@dataclass(frozen=True)
-class Recipe:
+class Recipe(Struct, frozen=True):
     """What a header says: the graph, the files that it read, and the settings."""
 
     path: Path

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from msgspec import Struct
 
 from ...color.management import get_color_manager
 from ...errors import DeviceError, UsageError
@@ -35,8 +36,7 @@ _PINNED_SUFFIX = "128 bits)"
 _DEFAULT_COLOR = "linear Rec.709, built in"
 
 
-@dataclass(frozen=True)
-class EnvironmentDifference:
+class EnvironmentDifference(Struct, frozen=True):
     """A part of the environment that differs from the recorded one."""
 
     name: str
@@ -44,8 +44,7 @@ class EnvironmentDifference:
     current: str
 
 
-@dataclass(frozen=True)
-class LayerDifference:
+class LayerDifference(Struct, frozen=True):
     """The difference of a layer. `farthest` is the largest difference of a number, relative to numbers over 1."""
 
     name: str
@@ -53,8 +52,7 @@ class LayerDifference:
     compared: PictureDifference
 
 
-@dataclass(frozen=True)
-class Reproduction:
+class Reproduction(Struct, frozen=True):
     """The result of rendering a picture again."""
 
     differences: tuple[EnvironmentDifference, ...]

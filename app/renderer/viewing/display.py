@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Protocol, get_args
+
+from msgspec import Struct
 
 from ..device import Device, DeviceTexture, PixelRect, TextureDepth
 from .look import Channels, Look, Meaning, Size, find_origin, find_panel_point
@@ -42,8 +43,7 @@ class Drawable(Protocol):
     def key(self) -> str: ...
 
 
-@dataclass(eq=False)
-class _Slot:
+class _Slot(Struct, eq=False):
     """The texture of a slot, and everything that decides its pixels."""
 
     texture: DeviceTexture

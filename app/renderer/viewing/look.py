@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import Literal
+
+from msgspec import Struct, field
 
 from ...color.management import ColorManager, get_default_color_manager
 
@@ -15,8 +16,7 @@ Point = tuple[float, float]
 Size = tuple[int, int]
 
 
-@dataclass(frozen=True)
-class Look:
+class Look(Struct, frozen=True):
     """The settings of a viewer. Colors are display-referred; lengths on the picture are in its full-size pixels."""
 
     zoom: float = 1.0

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import cast, get_args
+
+from msgspec import Struct
 
 from ...color.gpu_programs import write_view_program
 from ...color.management import ColorManager
@@ -19,8 +20,7 @@ _FIRST_TABLE = 2
 """The texture unit of a view's first table; pictures are bound to those before."""
 
 
-@dataclass(frozen=True)
-class ColorView:
+class ColorView(Struct, frozen=True):
     """A view of OpenColorIO: see `Look`."""
 
     view: str
@@ -28,8 +28,7 @@ class ColorView:
     look: str
 
 
-@dataclass(eq=False)
-class ViewProgram:
+class ViewProgram(Struct, eq=False):
     """A compiled program, and the tables that its view reads by texture unit."""
 
     device: Device

@@ -22,6 +22,7 @@ from halation.graph import INPUTS, Input, Port
 from halation.media.meshes.load import load_mesh
 from halation.nodes import BuiltInScene, Kind, catalogue, look_at
 from halation.resources.sandbox import UNRESTRICTED
+from msgspec import structs
 
 SIGHT = Sight((0.0, 0.0), (800, 400), (400, 200), zoom=2.0)
 ASPECT = 2.0
@@ -115,8 +116,8 @@ def test_what_is_moved_stays_under_the_mouse(editor: Any, depth: float | None) -
 
 def test_nearer_and_farther_within_limits() -> None:
     assert START.approach_by(2.0).distance == 3.25
-    assert replace(START, distance=1e-3).approach_by(2.0).distance == 1e-3
-    assert replace(START, distance=9e5).approach_by(0.5).distance == 1e6
+    assert structs.replace(START, distance=1e-3).approach_by(2.0).distance == 1e-3
+    assert structs.replace(START, distance=9e5).approach_by(0.5).distance == 1e6
 
 
 @pytest.mark.parametrize("name", ["stage", "corner", "blocks"])
