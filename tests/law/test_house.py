@@ -200,8 +200,8 @@ DATACLASSES = {
     "nodes/_declare/node.py",
     "nodes/_declare/sockets.py",
 }
-"""Where values are dataclasses: graphs and nodes, those of plug-ins too, are changed by `dataclasses.replace`, and for the
-sandbox alone `halation --help` would load msgspec, which takes ten times as long."""
+"""Where values are dataclasses: graphs and nodes, those of plug-ins too, are changed by `dataclasses.replace`, and for
+the sandbox alone `halation --help` would load msgspec, which takes ten times as long."""
 
 
 def test_values_are_structs() -> None:
