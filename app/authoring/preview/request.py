@@ -12,7 +12,7 @@ from msgspec.structs import replace
 
 from ...compiler import Region, UpstreamHashes
 from ...errors import GraphError
-from ...graph import INPUTS, OUTPUTS, Graph, Group, Port
+from ...graph import INPUTS, OUTPUTS, Graph, Group, Port, signature
 from ...renderer import RenderRequest
 from .frame_cache import FrameCache
 from .read_nodes import shows_same_pictures
@@ -100,16 +100,30 @@ def canvas_path(port: Port) -> str:
     return f"{port}" if port.node.rpartition("/")[2] == INPUTS else port.node
 
 
-def pixel_kind(graph: Graph, port: Port, channels: int) -> Kind:
-    """The kind of pixels of a port."""
+def find_output_place(graph: Graph, port: Port) -> int:
+    """Which of the outputs of its node a port is, from 0; 0 for the ends of a graph."""
+    graph, port = _enter_groups(graph, port)
+    item = graph.nodes.get(port.node)
+    names = list(signature(item).outputs) if item is not None else []
+    return names.index(port.socket) if port.socket in names else 0
+
+
+def _enter_groups(graph: Graph, port: Port) -> tuple[Graph, Port]:
+    """The innermost graph that the path of a port leads to, and the port inside it."""
     *groups, last = port.node.split("/")
     for name in groups:
         item = graph.nodes.get(name)
         if not isinstance(item, Group):
             break
         graph = item.graph
+    return graph, Port(last, port.socket)
+
+
+def pixel_kind(graph: Graph, port: Port, channels: int) -> Kind:
+    """The kind of pixels of a port."""
+    graph, port = _enter_groups(graph, port)
     try:
-        socket = graph.target(Port(last, port.socket)) if last == OUTPUTS else graph.source(Port(last, port.socket))
+        socket = graph.target(port) if port.node == OUTPUTS else graph.source(port)
     except GraphError:
         socket = None
     kind = getattr(socket, "kind", None)

@@ -12,7 +12,7 @@ from ...compiler import Plan, scale_size
 from ...media.comparison.data_range import are_normals, balance_range, find_data_range
 from ...renderer import DeviceTexture, Display, Look, PixelProbe, Renderer
 from .color_fallback import ColorFallback
-from .request import PreviewRequest, canvas_path, pixel_kind
+from .request import PreviewRequest, canvas_path, find_output_place, pixel_kind
 
 LARGEST = (160, 90)
 """The largest thumbnail: nearly as wide as a node on the canvas, in 16:9."""
@@ -24,13 +24,20 @@ class ThumbnailSource(Struct, frozen=True):
     """The result that a thumbnail shows. `mark` changes when anything upstream of the node changes."""
 
     path: str
+    place: int
+    """Which of the outputs of its node it is, from 0."""
     key: str
     kind: Kind
     channels: int
     mark: object
+    frame: int
     size: tuple[int, int]
     start: tuple[int, int]
     """The pixel of the frame with which the texture begins: below 0 if it goes on beyond the frame."""
+
+    def is_preferred_to(self, other: ThumbnailSource) -> bool:
+        """True for an earlier output of the same node in the same state: a view of a later one does not replace it."""
+        return self.place < other.place and (self.mark, self.frame) == (other.mark, other.frame)
 
 
 class _DisplaySource(Struct, frozen=True):
@@ -49,20 +56,29 @@ class _DisplaySource(Struct, frozen=True):
 
 class _Thumbnail(Struct, frozen=True):
     texture: DeviceTexture
-    key: str
-    mark: object
+    source: ThumbnailSource
 
 
 def list_thumbnail_sources(request: PreviewRequest, plan: Plan) -> dict[str, ThumbnailSource]:
-    """The thumbnail sources of a plan that has run, by path: the first output of each node."""
+    """The thumbnail sources of a plan that has run, by path: the first output of each node that it computes."""
     sources: dict[str, ThumbnailSource] = {}
     for port, number in plan.results.items():
         path, surface = canvas_path(port), plan.surfaces[number]
         kind = pixel_kind(request.graph, port, surface.channels)
         start, mark = surface.window.start if surface.window else (0, 0), request.node_mark(path)
-        sources.setdefault(
-            path, ThumbnailSource(path, surface.key, kind, surface.channels, mark, surface.frame_size, start)
+        source = ThumbnailSource(
+            path,
+            find_output_place(request.graph, port),
+            surface.key,
+            kind,
+            surface.channels,
+            mark,
+            request.frame,
+            surface.frame_size,
+            start,
         )
+        if path not in sources or source.is_preferred_to(sources[path]):
+            sources[path] = source
     return sources
 
 
@@ -88,9 +104,11 @@ class Thumbnails:
         self._manager = self._coloring.resolve(color or ColorSettings())
         for path, subject in subjects.items():
             thumbnail = self._thumbnails.get(path)
+            if thumbnail is not None and thumbnail.source.is_preferred_to(subject):
+                continue
             self._waiting.pop(path, None)
-            if thumbnail is not None and thumbnail.key == subject.key:
-                self._thumbnails[path] = _Thumbnail(thumbnail.texture, thumbnail.key, subject.mark)
+            if thumbnail is not None and thumbnail.source.key == subject.key:
+                self._thumbnails[path] = _Thumbnail(thumbnail.texture, subject)
             else:
                 self._waiting[path] = subject
 
@@ -106,14 +124,14 @@ class Thumbnails:
         size = scale_size(source.full_size, zoom)
         look = self._look(subject, source.texture, max(size[0] / width, size[1] / height))
         handle = self._display.draw(f"thumbnail {subject.path}", size, source, None, look)
-        self._thumbnails[subject.path] = _Thumbnail(handle, subject.key, subject.mark)
+        self._thumbnails[subject.path] = _Thumbnail(handle, subject)
         if subject.path not in self.paths:
             self.paths |= {subject.path}
 
     def find(self, path: str, mark: Callable[[str], object]) -> tuple[DeviceTexture, bool] | None:
         """The last thumbnail of a node, and whether it is up to date, by its `mark`."""
         thumbnail = self._thumbnails.get(path)
-        return thumbnail and (thumbnail.texture, thumbnail.mark == mark(path))
+        return thumbnail and (thumbnail.texture, thumbnail.source.mark == mark(path))
 
     def clear(self) -> None:
         """Drop all thumbnails."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 
 from halation.nodes import Node
 from msgspec.structs import replace
@@ -12,6 +12,7 @@ from ...graph import OUTPUTS, Graph, Port
 from ...reference.node_page import find_main_value, list_steps, make_example
 from ...reference.specimen import NODE, drawable_outputs, name_specimen
 from ...renderer import DeviceTexture, Display, Renderer
+from ..background.render_overviews import OverviewPending
 from .picture_job import PictureJob
 from .request import PreviewRequest
 from .thumbnails import Thumbnails, list_thumbnail_sources
@@ -84,17 +85,29 @@ class ValueStrip:
         """Compute the first output of a graph, and draw it while its result is on the device."""
         ports = {_OUTPUT: Port(OUTPUTS, next(iter(graph.outputs)))}
         request = PreviewRequest(graph, ports, {}, _DRAWN_LIKE_NODES, 1, None)
-        self._job = job = PictureJob(self._renderer, request, ports, 1, timed=False)
-        while not job.is_ready or not job.step():
-            with self._renderer.device.make_current():
-                self._renderer.device.finish()
-            yield
+        job = yield from self._compute(request)
         assert job.plan is not None
         source = list_thumbnail_sources(request, job.plan)[NODE]
         self._thumbnails.offer({_name_slot(index): replace(source, path=_name_slot(index))})
         self._thumbnails.draw_next()
         self._stop_job()
         yield
+
+    def _compute(self, request: PreviewRequest) -> Generator[None, None, PictureJob]:
+        """Compute the pictures of a request. Returns the job that holds them."""
+        while True:
+            self._stop_job()
+            try:
+                self._job = job = PictureJob(self._renderer, request, request.ports, 1, timed=False)
+                while not job.is_ready or not job.step():
+                    with self._renderer.device.make_current():
+                        self._renderer.device.finish()
+                    yield
+                return job
+            except OverviewPending as pending:  # the sample is a render: its layers are read on another thread
+                is_ready = pending.ready
+            while not is_ready():
+                yield
 
     def _stop_job(self) -> None:
         if self._job is not None:

@@ -91,6 +91,28 @@ def test_a_thumbnail_grows_stale_and_fresh_again(preview):
     assert preview.thumbnail("color")[1]
 
 
+def test_a_view_of_a_later_output_keeps_the_thumbnail_of_an_earlier_one(preview, engine):
+    """A node is known by its first output, such as the color of a render, until something upstream of it changes."""
+    graph = Graph().add("split", catalogue()["separate"]()).add_input("image", Input(Kind.IMAGE))
+    graph = graph.connect(Port("inputs", "image"), Port("split", "image"))
+    places = list(catalogue()["separate"].outputs)
+    request_preview(preview, graph, {"A": Port("split", places[0])})
+    settle(preview)
+
+    def read_thumbnail():
+        return read_texture(engine.device, preview.thumbnail("split")[0], np.uint8)
+
+    first = read_thumbnail()
+    request_preview(preview, graph, {"A": Port("split", places[1])})
+    settle(preview)
+    assert np.array_equal(read_thumbnail(), first)
+    changed = graph.add("light", Exposure(stops=1.0)).connect(Port("inputs", "image"), Port("light", "image"))
+    changed = changed.connect(Port("light", "out"), Port("split", "image"))
+    request_preview(preview, changed, {"A": Port("split", places[1])})
+    settle(preview)
+    assert preview.thumbnail("split")[1] and not np.array_equal(read_thumbnail(), first)
+
+
 def test_thumbnails_can_be_off(preview, engine):
     preview.thumbnailing = False
     request_preview(preview, chain())

@@ -5,13 +5,16 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
+import pytest
 from halation import document
+from halation.authoring.background.render_overviews import RenderOverviews
 from halation.authoring.preview.value_strip import ValueStrip
 from halation.graph import Graph
 from halation.graph.graph import Group
 from halation.nodes import Node, built_in_nodes
 from halation.nodes.channel.combine import Combine
 from halation.nodes.color.exposure import Exposure
+from halation.nodes.light.ambient_occlusion import AmbientOcclusion
 from halation.presets import paths
 from halation.reference.node_page import describe_cost, find_main_value, find_users, list_names, list_steps
 from halation.renderer import Display, Renderer
@@ -38,6 +41,20 @@ def test_a_strip_shows_the_value_from_low_to_high(renderer: Renderer) -> None:
     assert not strip.work() and not strip.numbers and strip.find(0) is None
     strip.close()
     display.close()
+
+
+def test_a_strip_waits_for_the_layers_of_its_sample(renderer: Renderer, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In the editor another thread reads renders: the strip of a node that needs depth begins before it has."""
+    display, overviews = Display(renderer.device), RenderOverviews(UNRESTRICTED)
+    monkeypatch.setattr(renderer.pictures, "describer", overviews.describe_render)
+    strip = ValueStrip(renderer, display)
+    strip.want(AmbientOcclusion)
+    while strip.work():
+        pass
+    assert all(strip.find(index) for index in range(len(strip.numbers))) and strip.numbers
+    strip.close()
+    display.close()
+    overviews.close()
 
 
 def read(strip: ValueStrip, index: int) -> np.ndarray:
