@@ -145,6 +145,8 @@ class InputQueue:
         self._waited = 0
         self._is_text_used = False
         """Whether the latest key was used as a key: then its character is no text for a field that it opened."""
+        self.has_forwarded = False
+        """Whether the last frame got anything."""
         self._press_times: dict[int, float] = {}
         """When each button of the mouse went down last."""
 
@@ -246,6 +248,7 @@ class InputQueue:
 
         Events leave in their order: the first that has to wait ends the share. The essay of this module says which do.
         """
+        self.has_forwarded = bool(self._events)
         io, share = imgui.get_io(), _Share()
         io.mouse_double_click_time, io.mouse_single_click_delay = DOUBLE_CLICK, SINGLE_CLICK
         is_settled = self._is_focus_settled()

@@ -16,6 +16,7 @@ from collections.abc import Callable
 from contextlib import suppress
 
 from imgui_bundle import imgui
+from msgspec import Struct
 
 import glfw  # isort: skip
 
@@ -35,6 +36,10 @@ _CHANGES = 4.0
 _SOON = 10.0
 """Frames per second while a thread reads what is about to be shown."""
 
+_SETTLING_RATE, _SETTLING_SECONDS, _SETTLING_FRAMES = 30.0, 1.0, 8
+"""Frames per second after an event, for how many seconds, and at least how many of them. A dialog takes up to 5 frames
+to be laid out (see `input_events`), and a tooltip waits 0.4 s for a mouse that rests."""
+
 GRACE = 1.5
 """Seconds of drawing after the last picture: thumbnails, scopes and the search for NaN follow it."""
 
@@ -51,6 +56,23 @@ def choose_idle_rate(editor: Editor) -> float:
     if editor.exports.running or (newest and editor.log.age(newest) < max(SECONDS, TOAST_SECONDS) + 1.0):
         return _CHANGES
     return _BLINK if imgui.get_io().want_text_input else AT_REST
+
+
+class Settling(Struct):
+    """How often the window draws while what the last event changed finds its place.
+
+    The library that hosts the window would do this itself, but it sees no events: they come from our queue.
+    """
+
+    _until: float = 0.0
+    _frames: int = 0
+
+    def choose_rate(self, has_event: bool, time_now: float) -> float:
+        """Frames per second after a frame, which had events or not; 0 when all has settled."""
+        if has_event:
+            self._until, self._frames = time_now + _SETTLING_SECONDS, _SETTLING_FRAMES
+        self._frames = max(self._frames - 1, 0)
+        return _SETTLING_RATE if self._frames or time_now < self._until else 0.0
 
 
 class FrameWaker:

@@ -34,7 +34,7 @@ from .layouts import LAYOUTS, apply_layout, find_panel, make_splits
 from .menus import MenuBar
 from .painting import RESIZED, WindowPainter, measure_window
 from .panels import DOCKED, OVERLAYS, Docked, Panel
-from .resting import GRACE, FrameWaker, choose_idle_rate
+from .resting import GRACE, FrameWaker, Settling, choose_idle_rate
 from .screenshot import save_screenshot
 from .shortcuts import note_scope, run_shortcuts
 from .status import draw_status
@@ -77,7 +77,7 @@ class Window:
         self._overlays, self._first_action = dict[str, Panel](), first_action
         self._updater: FrameUpdater
         self._waker: FrameWaker
-        self._worked_at = 0.0
+        self._worked_at, self._settling = 0.0, Settling()
         self._hidden: tuple[PanelTitle, ...] = ()
         """Panels that are hidden while another one fills the window."""
         self._front: frozenset[PanelTitle] = frozenset()
@@ -318,7 +318,8 @@ class Window:
             self._worked_at = time_now
         resting = self.params.fps_idling
         resting.enable_idling = time_now - self._worked_at > GRACE and not self._input
-        resting.fps_idle = choose_idle_rate(editor)
+        settling = self._settling.choose_rate(self._input.has_forwarded, time_now)
+        resting.fps_idle = max(settling, choose_idle_rate(editor))
 
     def _serve_commands(self) -> None:
         """Do what panels and actions asked the window to do."""
