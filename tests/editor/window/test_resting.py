@@ -6,7 +6,7 @@ from halation.editor.window.resting import Settling
 
 
 def test_frames_follow_an_event_until_all_has_its_place() -> None:
-    """On a quick machine for a second, longer than a tooltip waits; on a slow one for as long as a dialog needs frames."""
+    """On a quick machine for a second, longer than a tooltip waits; on a slow one as many as a dialog needs."""
     for frame_seconds, least in ((1 / 60, 60), (0.5, 6)):
         settling, time_now, frames = Settling(), 5.0, 0
         assert settling.choose_rate(False, time_now) == 0.0
