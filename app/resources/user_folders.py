@@ -33,6 +33,18 @@ def own_presets_folder() -> Path:
     return base / "presets"
 
 
+def first_folder() -> Path:
+    """Where to look for files when nothing is known yet: the folder in which the program was started.
+
+    Home where that says nothing, as for a program that was started from a menu of the system.
+    """
+    try:
+        here = Path.cwd()
+    except OSError:  # it was removed since
+        return Path.home()
+    return Path.home() if here == Path(here.anchor) else here
+
+
 def shared_data_folder() -> Path:
     """The user's folder of what programs of the desktop share, such as icons and entries of the menu."""
     import platformdirs

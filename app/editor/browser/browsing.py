@@ -16,6 +16,7 @@ from ...graph.frames import VIDEO_ENDINGS
 from ...media.lettering import FONT_ENDINGS
 from ...media.meshes.load import MESH_ENDINGS
 from ...media.pictures.file_endings import list_readable_endings
+from ...resources.user_folders import first_folder
 from ..shared.dialogs import Browse
 from .listing import Item, Listing, Order
 from .places import Place, complete_path, is_path, names_folder, places
@@ -131,13 +132,13 @@ def begin_browsing(
     """Start where a file was chosen last for this beside the same document, else where the document is.
 
     A document without a file has the folder that was used last for this purpose, then that of the newest recent file;
-    only the first one of all begins at home.
+    only the first one of all begins where the editor was started.
     """
     own, recent_files = find_own_folder(context), context.store.current.recent
-    newest = Path(recent_files[0].path).parent if recent_files else Path.home()
+    newest = Path(recent_files[0].path).parent if recent_files else first_folder()
     untitled = Path(context.store.folder(browse.purpose) or newest)
     start = memory.get((own, browse.purpose)) or own or untitled
-    start = start if os.path.isdir(start) else Path.home()  # noqa: PTH112 - False for an invalid path
+    start = start if os.path.isdir(start) else first_folder()  # noqa: PTH112 - False for an invalid path
     recent = tuple(dict.fromkeys(Path(recent_file.path).parent for recent_file in context.store.current.recent))[:4]
     used = tuple(Path(folder) for folder in context.store.current.folders.values())
     browsing = Browsing(browse, start, endings(browse), places(own, recent, used), browse.name)

@@ -33,6 +33,7 @@ from ...media.video.codecs import WRITABLE as VIDEO_ENDINGS
 from ...media.video.library import load_pyav
 from ...resources.render_choices import Dither
 from ...resources.sandbox import Sandbox
+from ...resources.user_folders import first_folder
 
 if TYPE_CHECKING:
     from .context import RendersContext
@@ -150,7 +151,7 @@ class RenderForm(Struct):
         """The suggested file of an output."""
         last = self.context.store.folder("export")
         session = self.context.session
-        folder = Path(last) if last else session.path.absolute().parent if session.path else Path.home()
+        folder = Path(last) if last else session.path.absolute().parent if session.path else first_folder()
         if self.has_many_files:
             return folder / (
                 f"{FILE_STEM}{self.format}" if len(session.root.outputs) == 1 else f"{FILE_STEM}_{output}{self.format}"

@@ -215,8 +215,15 @@ def test_it_starts_where_the_document_is(desk: Desk, folder: Path, tmp_path: Pat
     assert begin_browsing(desk, Browse("Choose", "graph", print), memory).folder == folder
 
 
-def test_only_the_first_document_starts_at_home(desk: Desk, folder: Path) -> None:
-    assert begin_browsing(desk, Browse("Choose", "graph", print)).folder == Path.home()
+@pytest.mark.parametrize(("started", "shown"), [("inner", "inner"), ("/", "~")])
+def test_only_the_first_document_starts_where_the_editor_was_started(
+    desk: Desk, folder: Path, monkeypatch: pytest.MonkeyPatch, started: str, shown: str
+) -> None:
+    """A menu of the system starts programs at the root of all files, which is nowhere in particular."""
+    monkeypatch.chdir(folder / started)
+    assert begin_browsing(desk, Browse("Choose", "graph", print)).folder == (
+        folder / shown if shown != "~" else Path.home()
+    )
     desk.store.note_opened(folder / "a.json")
     assert begin_browsing(desk, Browse("Choose", "graph", print)).folder == folder
 
