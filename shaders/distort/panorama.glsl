@@ -76,7 +76,7 @@ vec3 panorama_way(vec2 at, vec2 size, int projection, float angle) {
     if (projection == SOURCE_PERSPECTIVE) return normalize(vec3(1.0, -p * tan(0.5 * angle)));
     if (far > 1.0 && projection != SOURCE_LITTLE_PLANET) return vec3(0.0);
     float away = projection == SOURCE_FISHEYE ? 0.5 * angle * far
-        : projection == SOURCE_MIRROR_BALL ? 2.0 * asin(far)
+        : projection == SOURCE_MIRROR_BALL ? 2.0 * atan(far, sqrt(max(1.0 - far * far, 0.0)))
                                            : 2.0 * atan(far * tan(0.25 * angle));
     vec3 way = vec3(cos(away), far > 0.0 ? -sin(away) * p / far : vec2(0.0));
     return projection == SOURCE_LITTLE_PLANET ? vec3(way.z, way.y, -way.x) : way;  // it looks down, its top is the front
@@ -91,7 +91,7 @@ vec2 panorama_place(vec3 way, vec2 size, int projection, float angle) {
         return panorama_corner(face, projection, side) + side * (0.5 + 0.5 * p);
     }
     if (projection == SOURCE_LITTLE_PLANET) way = vec3(-way.z, way.y, way.x);
-    float away = acos(clamp(way.x, -1.0, 1.0)), across = length(way.yz);
+    float across = length(way.yz), away = atan(across, way.x);  // drivers approximate acos() to three digits only
     if (projection == SOURCE_PERSPECTIVE && way.x < 1e-4) return panorama_nowhere;
     float far = projection == SOURCE_FISHEYE ? 2.0 * away / angle
         : projection == SOURCE_MIRROR_BALL ? sin(0.5 * away)

@@ -7,7 +7,7 @@
 vec2 environment_uv(vec3 way, bool y_up, float turn) {
     if (y_up) way = way.zxy;
     float longitude = way.xy == vec2(0.0) ? 0.0 : atan(way.y, way.x);
-    float below = acos(clamp(way.z, -1.0, 1.0));
+    float below = atan(length(way.xy), way.z);  // drivers approximate acos() to three digits only
     return vec2(fract(0.5 - (longitude - turn) / (2.0 * PI)), below / PI);
 }
 

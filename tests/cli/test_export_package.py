@@ -18,6 +18,7 @@ from exr_files import read
 from halation import document
 from halation.compiler import Plan, Request, compile_graph
 from halation.compiler.knobs import Knob, Point
+from halation.export.package.assembly import _describe_skipped  # pyright: ignore[reportPrivateUsage]
 from halation.export.package.curves import PLACED, fill_gaps, read_slot, simplify, write_slot
 from halation.export.package.dialects import COVERING_VERTEX, DIALECTS
 from halation.export.package.exact_functions import use_exact_functions
@@ -263,10 +264,13 @@ def test_curves_are_polygons_and_grids_are_bilinear() -> None:
 
 def test_the_settings_of_the_graph_keep_their_passes() -> None:
     """However many spans a knob has, the one with its value in the graph is kept, and that value stands for it."""
-    samples = {float(x): Sample(None, x, ()) for x in range(40)}  # pyright: ignore[reportArgumentType]
-    for rest in samples:
-        axis = find_axis("size", rest, samples)
-        assert axis and len(axis.spans) <= MAX_SPANS and rest in [span.middle for span in axis.spans]
+    for count in (MAX_SPANS, MAX_SPANS + 17):
+        samples = {float(x): Sample(None, x, ()) for x in range(count)}  # pyright: ignore[reportArgumentType]
+        for rest in samples:
+            axis = find_axis("size", rest, samples)
+            assert axis and len(axis.spans) <= MAX_SPANS and rest in [span.middle for span in axis.spans]
+            assert axis.skipped == count - len(axis.spans)
+            assert [f"has {count} lists" in note for note in _describe_skipped([axis])] == [True] * (count > MAX_SPANS)
 
 
 def test_a_polygon_is_simplified_without_loss() -> None:
@@ -319,6 +323,21 @@ def test_edges_are_looked_for_closely_unless_they_are_everywhere(edges: float, m
     if edges < 100.0:
         found = [(a + b) / 2.0 for a, b in itertools.pairwise(samples) if int(edges * a) != int(edges * b)]
         np.testing.assert_allclose(found, np.arange(1, 11) / edges, atol=JUMP_STEP)
+
+
+def test_small_numbers_of_a_table_are_sampled_beside_huge_ones() -> None:
+    """What bends gets samples, whatever else the table holds; rounding of a number near 0 gets none."""
+
+    def take(point: Point) -> Sample:
+        x = point["turn"]
+        numbers = np.array([np.sin(6.0 * x), 1e18, 1e-9 * np.sin(50.0 * x)])
+        return Sample(None, 0, (Slot(numbers, is_whole=False, is_table=True),))  # pyright: ignore[reportArgumentType]
+
+    samples = KnobSampler(take, {}, Knob("turn", 0.2, 0.0, 1.0)).sample_range()
+    assert 16 < len(samples) < 100
+    between = np.linspace(0.0, 1.0, 500)
+    lines = np.interp(between, list(samples), [sample.slots[0].numbers[0] for sample in samples.values()])
+    assert np.abs(lines - np.sin(6.0 * between)).max() < 2.5e-3
 
 
 def test_corners_of_curves_stay() -> None:

@@ -85,7 +85,7 @@ class _Assembly:
         document |= {"slots": self.parts.slots, "plans": plans}
         frozen = ["it shows one frame: other frames need other passes"] if FRAME in held_names else []
         held_notes = [describe_control(name, remark) for name, remark in remarks.items()]
-        notes = (*held_notes, *frozen, *self._describe_poor())
+        notes = (*held_notes, *frozen, *_describe_skipped(axes), *self._describe_poor())
         return Package(document, notes, tuple(self.parts.programs), tuple(self.parts.blobs))
 
     def _write_plans(self, axes: Sequence[VariantAxis], knobs: list[Knob], base: Point, phase: Phase) -> list[Record]:
@@ -210,6 +210,16 @@ def _describe_held(axes: Sequence[VariantAxis], irregular_names: set[str]) -> di
     reasons = {find_control_name(axis.knob): "it changes passes, as others do already" for axis in axes}
     reasons |= dict.fromkeys(sorted(irregular_names), "it moves outlines, and sorted tables of them are baked")
     return {name: f"keeps its value: {reason}" for name, reason in reasons.items() if name != FRAME}
+
+
+def _describe_skipped(axes: Sequence[VariantAxis]) -> list[str]:
+    """A sentence for each control of which a package cannot hold all lists of passes."""
+    return [
+        f"control {find_control_name(axis.knob)} has {len(axis.spans) + axis.skipped} lists of passes, and the package "
+        f"holds {len(axis.spans)}: between them it moves in steps; narrow its range, or export with a smaller --size"
+        for axis in axes
+        if axis.skipped
+    ]
 
 
 def _choose_widget(value: Value) -> str:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .sampling import Array, Sample
+from .sampling import LEAST_SCALE, Array, Sample
 
 _LEAST_NUMBER, _LEAST_LARGEST = 1e-12, 1e-9
 """What the largest number counts as at least, so that nothing is divided by 0: below what matters in a picture."""
@@ -82,7 +82,7 @@ def write_slot(
     for name, group in samples.items():
         places = np.array(list(group))
         rows = np.array([_pad(sample.slots[number].numbers, length) for sample in group.values()])
-        largest = np.abs(rows).max(axis=0 if slot.is_table else None, initial=_LEAST_NUMBER)  # tables mix all units
+        largest = _find_largest(rows, is_table=slot.is_table)
         if len(places) > 1 and (np.abs(rows - rest) / largest).max(initial=0.0) > _SAME:
             is_snapped = name in jumps.whole and (slot.is_whole or len(lengths) > 1)
             knob_gaps = [gaps[name] for gaps in jumps if name in gaps]
@@ -143,7 +143,8 @@ def add_grids(
             if (sample := rows[i][j]) is not None:
                 numbers = _pad(sample.slots[number].numbers, length)
                 rest[i, j] = numbers - read_slot({**record, "grids": ()}, {first: x, second: y})
-        if np.abs(rest).max(initial=0.0) > LINE * max(float(np.abs(record["base"]).max()), _LEAST_NUMBER):
+        largest = _find_largest(np.array([record["base"]]), is_table=checks[0][1].slots[number].is_table)
+        if (np.abs(rest) / largest).max(initial=0.0) > LINE:
             values = [[_round(row) for row in line] for line in rest]
             record.setdefault("grids", []).append(
                 {"knobs": [first, second], "at": [_round(np.array(xs)), _round(np.array(ys))], "values": values}
@@ -235,7 +236,8 @@ def find_needed_places(samples: Mapping[float, Sample], places: list[float]) -> 
     for number in range(len(group[0].slots)):
         if len({len(sample.slots[number].numbers) for sample in group}) > 1:
             return places
-        needed.update(simplify(np.array(places), np.array([sample.slots[number].numbers for sample in group])))
+        rows = np.array([sample.slots[number].numbers for sample in group])
+        needed.update(simplify(np.array(places), rows / _find_largest(rows, is_table=group[0].slots[number].is_table)))
     return [places[at] for at in sorted(needed)]
 
 
@@ -251,12 +253,18 @@ def _choose_mode(record: Record, number: int, length: int, checks: list[Any]) ->
 
 def measure_error(record: Record, number: int, checks: list[Any]) -> float:
     """The largest error of a slot at the checks, as a part of its largest number."""
-    largest, error = _LEAST_LARGEST, 0.0
-    for point, sample in checks:
-        numbers = _pad(sample.slots[number].numbers, len(record["base"]))
-        largest = max(largest, float(np.abs(numbers).max(initial=0.0)))
-        error = max(error, float(np.abs(read_slot(record, point) - numbers).max(initial=0.0)))
-    return error / largest
+    if not checks:
+        return 0.0
+    rows = np.array([_pad(sample.slots[number].numbers, len(record["base"])) for _, sample in checks])
+    errors = np.abs(np.array([read_slot(record, point) for point, _ in checks]) - rows)
+    is_table = checks[0][1].slots[number].is_table
+    least = LEAST_SCALE if is_table else _LEAST_LARGEST
+    return float((errors / np.maximum(_find_largest(rows, is_table=is_table), least)).max(initial=0.0))
+
+
+def _find_largest(rows: Array, *, is_table: bool) -> Array:
+    """What errors are parts of: the largest number of all rows, or of each column of tables, as they mix all units."""
+    return np.asarray(np.abs(rows).max(axis=0 if is_table else None, initial=_LEAST_NUMBER))
 
 
 def _pad(numbers: Array, length: int) -> Array:

@@ -29,11 +29,15 @@ width."""
 
 BEND = 2e-3
 """How far a number may lie beside the line between two samples, as a part of the largest number of its slot: half a
-step of 8 bits for what scales a color."""
+step of 8 bits for what scales a color. A table mixes units, such as places of lights and how many there are: there each
+number counts by the largest that it has along the knob."""
 
 JUMP = 0.02
-"""How far the numbers of a table lie beside the line between neighbors, as a part of the largest, where they jump.
+"""How far the numbers of a table lie beside the line between neighbors, as such a part, where they jump.
 It is ten times `BEND`; at the smallest step, a smooth number is ten times nearer."""
+
+LEAST_SCALE = 1e-4
+"""What a number of a table counts as at least, so that the rounding of a float near 1 is nothing. A choice."""
 
 MOST_JUMPS = 4
 """Jumps of tables along a knob up to which it is a control: so many of 256 steps of a slider are wrong. A choice."""
@@ -45,6 +49,7 @@ LEAST_MATRIX = 9
 """Numbers of the smallest matrix: three rows of three."""
 
 Array = np.ndarray
+_NO_SCALE = np.ones(1)
 LoadFunction = Callable[[Picture], Array]
 
 
@@ -113,6 +118,24 @@ def _is_whole(value: Uniform) -> bool:
     return all(isinstance(part, int) for part in (value if isinstance(value, tuple) else (value,)))
 
 
+class TableScales:
+    """The largest that each number of a table has in all samples so far of the same passes and as many numbers."""
+
+    def __init__(self) -> None:
+        self._largest: dict[tuple[object, int, int], Array] = {}
+
+    def add(self, sample: Sample) -> None:
+        """Take one more sample into account."""
+        for number, slot in enumerate(sample.slots):
+            if slot.is_table:
+                key = sample.structure, number, len(slot.numbers)
+                self._largest[key] = np.maximum(self._largest.get(key, LEAST_SCALE), np.abs(slot.numbers))
+
+    def find(self, sample: Sample, number: int) -> Array:
+        """What each number of a slot counts as; nothing is known of what is no table."""
+        return self._largest.get((sample.structure, number, len(sample.slots[number].numbers)), _NO_SCALE)
+
+
 class KnobSampler(Struct):
     """Samples one knob while all others rest at `base`."""
 
@@ -122,6 +145,7 @@ class KnobSampler(Struct):
     is_dense: bool = False
     """Whether all whole numbers of the range are sampled: keys of an animation may be anywhere."""
     samples: dict[float, Sample] = field(default_factory=dict[float, Sample])
+    scales: TableScales = field(default_factory=TableScales)
 
     def sample_range(self) -> dict[float, Sample]:
         """Samples from low to high, close enough for lines between them."""
@@ -144,6 +168,7 @@ class KnobSampler(Struct):
         sample = self._take(x)
         if sample is not None:
             self.samples[x] = sample
+            self.scales.add(sample)
         return sample
 
     def _replace_special(self, places: list[float]) -> None:
@@ -180,10 +205,19 @@ class KnobSampler(Struct):
             sample = self.samples[middle]
             if high - low <= (self.knob.high - self.knob.low) * SMALLEST_STEP:
                 return  # passes that change everywhere, as with a size of pictures, have no edge to look for
-        if first.structure == last.structure == sample.structure and _is_straight(first, sample, last):
+        if first.structure == last.structure == sample.structure and self._is_straight(first, sample, last):
             return
         self._refine(low, middle)
         self._refine(middle, high)
+
+    def _is_straight(self, first: Sample, middle: Sample, last: Sample) -> bool:
+        """True if all numbers of the middle sample lie between those of the others."""
+        for number, (a, b, c) in enumerate(zip(first.slots, middle.slots, last.slots, strict=True)):
+            if not len(a.numbers) == len(b.numbers) == len(c.numbers):
+                return False
+            if _measure_bend(a, b, c, self.scales.find(middle, number)) > BEND:
+                return False
+        return True
 
 
 def _jumps(first: Sample, last: Sample) -> bool:
@@ -198,30 +232,28 @@ def is_irregular(samples: Mapping[float, Sample]) -> bool:
 
     Between two such tables there is nothing, and the nearest one is that of another value.
     """
-    jumps = 0
+    jumps, scales = 0, TableScales()
+    for sample in samples.values():
+        scales.add(sample)
     for (x, a), (y, b), (z, c) in zip(*(list(samples.items())[at:] for at in range(3)), strict=False):
         if a.structure == b.structure == c.structure:
             share = (y - x) / (z - x)
             jumps += any(
-                _measure_bend(*slots, share) > JUMP
-                for slots in zip(a.slots, b.slots, c.slots, strict=True)
+                _measure_bend(*slots, scales.find(b, number), share) > JUMP
+                for number, slots in enumerate(zip(a.slots, b.slots, c.slots, strict=True))
                 if slots[1].is_table and len({len(slot.numbers) for slot in slots}) == 1
             )
     return jumps > MOST_JUMPS
 
 
-def _measure_bend(first: Slot, middle: Slot, last: Slot, share: float = 0.5) -> float:
-    """How far numbers lie beside the line between those of two other samples, as a part of the largest of these."""
+def _measure_bend(first: Slot, middle: Slot, last: Slot, scale: Array, share: float = 0.5) -> float:
+    """How far numbers lie beside the line between those of two other samples, as a part of the largest of these.
+
+    `scale` is what each number of a table counts as.
+    """
     a, c = first.numbers, last.numbers
+    aside = np.abs(a + share * (c - a) - middle.numbers)
+    if middle.is_table:
+        return float((aside / scale).max(initial=0.0))
     largest = max(np.abs(a).max(initial=0.0), np.abs(c).max(initial=0.0), 1e-9)  # above 0, where all are 0
-    return float(np.abs(a + share * (c - a) - middle.numbers).max(initial=0.0) / largest)
-
-
-def _is_straight(first: Sample, middle: Sample, last: Sample) -> bool:
-    """True if all numbers of the middle sample lie between those of the others."""
-    for a, b, c in zip(first.slots, middle.slots, last.slots, strict=True):
-        if not len(a.numbers) == len(b.numbers) == len(c.numbers):
-            return False
-        if _measure_bend(a, b, c) > BEND:
-            return False
-    return True
+    return float(aside.max(initial=0.0) / largest)

@@ -10,8 +10,8 @@ from msgspec import Struct
 from .sampling import Sample
 
 MAX_SPANS = 40
-"""Spans of one knob; of more, some are left out, and the picture is that of a neighbor. Of the presets, blurs of
-varying width have the most, as their pyramids grow: 33 in a picture of 480x270."""
+"""Spans of one knob; of more, some are left out, the picture is that of a neighbor, and a note says so. Of the presets,
+blurs of varying width have the most, as their pyramids grow: 33 in a picture of 480x270."""
 
 MAX_VARIANTS = 40
 """Combinations of spans that a package may hold: each has its own list of passes, of about 10 KB."""
@@ -30,6 +30,8 @@ class VariantAxis(Struct, frozen=True):
 
     knob: str
     spans: tuple[Span, ...]
+    skipped: int = 0
+    """How many more lists of passes the knob has: there the picture is that of a neighbor."""
 
     @property
     def edges(self) -> list[float]:
@@ -48,12 +50,13 @@ def find_axis(knob: str, rest: float, samples: Mapping[float, Sample]) -> Varian
         runs[-1].append(x)
     if len(runs) < 2:
         return None
-    if len(runs) > MAX_SPANS:
+    count = len(runs)
+    if count > MAX_SPANS:
         chosen = {round(at * (len(runs) - 1) / (MAX_SPANS - 2)) for at in range(MAX_SPANS - 1)}
         runs = [run for at, run in enumerate(runs) if at in chosen or rest in run]
     middles = [rest if rest in run else run[len(run) // 2] for run in runs]
     spans = (Span(run[0], run[-1], middle) for run, middle in zip(runs, middles, strict=True))
-    return VariantAxis(knob, tuple(spans))
+    return VariantAxis(knob, tuple(spans), count - len(runs))
 
 
 def choose_axes(axes: Sequence[VariantAxis]) -> tuple[list[VariantAxis], list[VariantAxis]]:

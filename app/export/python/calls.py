@@ -15,8 +15,9 @@ from ...compiler.lowering.steps import field_port
 from ...errors import GraphError
 from ...graph import Port
 from ..order import ExportOrder
+from .formulas import FunctionText
 from .library import Definition, FunctionParameter, load_library
-from .numbers import Plain, find_unit, list_settings, write_plain, write_quantity
+from .numbers import DERIVED, Plain, find_unit, list_settings, write_plain, write_quantity
 from .outline import LoweredGraph, NameTable, PictureInput, ScriptCall, ScriptOutline
 
 
@@ -184,7 +185,7 @@ class CallWriter:
     def _write_arguments(
         self, path: str, node: Node, feeds: dict[str, Port], function: Definition, size: Size, common: Size
     ) -> tuple[str, ...]:
-        settings = [list_settings(each) for each in self.lowered.nodes_at_frames(path)]
+        settings = [list_settings(each, path) for each in self.lowered.nodes_at_frames(path)]
         names = [parameter.name for parameter in function.parameters]
         self._refuse_settings(path, node, settings, feeds, names)
         arguments: list[str] = []
@@ -216,6 +217,8 @@ class CallWriter:
         for name in feeds:
             if name in node.inputs and name not in names and not (name == MASK and node.has_mask):
                 raise _refuse(path, f"the numpy text for '{node.id}' has no input '{name}': unlink it")
+        for name in feeds.keys() & DERIVED.get(node.id, ((),))[0]:
+            raise _refuse(path, f"its value '{name}' is linked, and numpy text takes only a number there")
         mask_values = {MIX, INVERT_MASK} if node.has_mask else set[str]()
         for name in settings[0].keys() - set(names) - mask_values:
             changed = any(setting[name] != node.values[name].default for setting in settings if name in node.values)
@@ -254,6 +257,8 @@ class CallWriter:
         for value in values:
             if parameter.choices and value not in parameter.choices:
                 raise _refuse(path, f"the numpy text for '{node.id}' does not know '{name}': {value!r}: choose another")
+        if isinstance(values[0], FunctionText):
+            self.outline.helpers.update(values[0].helpers)
         self._note_choices(node, name, values)
         unit = find_unit(node, name, self.lowered.flat.find_reference_height(path))
         text = write_plain(values[0])

@@ -8,10 +8,15 @@ from typing import Any
 
 from halation.nodes import Node, read_reference, resolve_length_unit
 
-Plain = float | int | bool | str | tuple[Any, ...] | None
+from .formulas import FunctionText, write_formula_text
 
-DERIVED: Mapping[str, tuple[tuple[str, ...], str, Callable[[Any], tuple[float, ...]]]] = MappingProxyType(
+Plain = float | int | bool | str | tuple[Any, ...] | FunctionText | None
+
+_GRID_POINTS = tuple(f"point_{row}{column}" for row in range(1, 5) for column in range(1, 5))
+
+DERIVED: Mapping[str, tuple[tuple[str, ...], str, Callable[[Any], tuple[Any, ...]]]] = MappingProxyType(
     {
+        "grid_warp": (_GRID_POINTS, "points", lambda node: tuple(getattr(node, name) for name in _GRID_POINTS)),
         "gradient_map": (("palette", "ramp"), "ramp", lambda node: node.resolve_ramp()),
         "color_matrix": (("preset", "matrix", "direction"), "matrix", lambda node: node.resolve_matrix()),
         "convolve3x3": (("preset", "kernel", "normalize", "scale"), "kernel", lambda node: node.weights()),
@@ -20,9 +25,11 @@ DERIVED: Mapping[str, tuple[tuple[str, ...], str, Callable[[Any], tuple[float, .
 """Values that decide one number of a function together: their names, that of the number, and what they make of it."""
 
 
-def list_settings(node: Node) -> dict[str, Plain]:
+def list_settings(node: Node, path: str) -> dict[str, Plain]:
     """What a function is given of a node, by parameter."""
     settings: dict[str, Plain] = dict(node.settings)
+    if node.id == "pixel_formula":
+        settings["formula"] = write_formula_text(str(settings["formula"]), path)
     if node.id in DERIVED:
         names, name, derive = DERIVED[node.id]
         settings = {other: setting for other, setting in settings.items() if other not in names}
@@ -41,6 +48,8 @@ def find_unit(node: Node, name: str, reference_height: int | None) -> str | None
 
 def write_plain(value: Plain) -> str:
     """A value as text, with the nine digits that a 32-bit float has."""
+    if isinstance(value, FunctionText):
+        return value.text
     if isinstance(value, tuple):
         parts = [write_plain(part) for part in value]
         return f"({', '.join(parts)}{',' if len(parts) == 1 else ''})"
