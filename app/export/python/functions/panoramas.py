@@ -92,6 +92,26 @@ def face_side(projection: str, size: Array) -> Array:
     return size / (np.array([6.0, 1.0]) if projection == "cube strip" else np.array([4.0, 3.0]))
 
 
+def angles_from_middle(far: Array, projection: str, angle: float) -> Array:
+    """How far a round picture shows from its middle, by the distance in half heights."""
+    if projection == "fisheye":
+        return 0.5 * angle * far
+    if projection == "mirror ball":
+        return 2.0 * np.arcsin(np.minimum(far, 1.0))
+    return 2.0 * np.arctan(far * np.tan(0.25 * angle))
+
+
+def distances_from_middle(away: Array, projection: str, angle: float) -> Array:
+    """The distance in half heights at which a picture shows an angle: the inverse, also for perspective views."""
+    if projection == "fisheye":
+        return 2.0 * away / angle
+    if projection == "mirror ball":
+        return np.sin(0.5 * away)
+    if projection == "perspective":
+        return np.tan(away) / np.tan(0.5 * angle)
+    return np.tan(np.minimum(0.5 * away, 1.57)) / np.tan(0.25 * angle)
+
+
 def way_in_picture(at: Array, size: Array, projection: str, angle: float) -> Array:
     """The direction of a place in a picture; 0 where there is none."""
     if projection == "lat-long":
@@ -112,10 +132,7 @@ def way_in_picture(at: Array, size: Array, projection: str, angle: float) -> Arr
         aside = -p * np.tan(0.5 * angle)
         way = vectors(np.ones_like(far), aside[..., 0], aside[..., 1])
         return way / length(way)
-    away = {
-        "fisheye": 0.5 * angle * far,
-        "mirror ball": 2.0 * np.arcsin(np.minimum(far, 1.0)),
-    }.get(projection, 2.0 * np.arctan(far * np.tan(0.25 * angle)))
+    away = angles_from_middle(far, projection, angle)
     aside = -np.sin(away)[..., None] * p / np.where(far > 0.0, far, 1.0)[..., None]
     if projection == "little planet":  # it looks down, its top is the front
         return vectors(aside[..., 1], aside[..., 0], -np.cos(away))
@@ -137,11 +154,7 @@ def place_in_picture(way: Array, size: Array, projection: str, angle: float) -> 
     away, across = np.arccos(np.clip(way[..., 0], -1.0, 1.0)), length(way[..., 1:])
     if projection == "perspective":
         shown &= way[..., 0] >= 1e-4
-    far = {
-        "fisheye": 2.0 * away / angle,
-        "mirror ball": np.sin(0.5 * away),
-        "perspective": np.tan(np.where(shown, away, 0.0)) / np.tan(0.5 * angle),
-    }.get(projection, np.tan(np.minimum(0.5 * away, 1.57)) / np.tan(0.25 * angle))
+    far = distances_from_middle(np.where(shown, away, 0.0), projection, angle)
     toward = -way[..., 1:] / np.where(across > 0.0, across, 1.0)
     at = 0.5 * size + 0.5 * size[1] * toward * far[..., None]
     return at, shown & np.all((at >= 0.0) & (at <= size), axis=-1)
@@ -152,12 +165,11 @@ def pixels_to_a_radian(way: Array, size: Array, projection: str, angle: float) -
     near = np.abs(way).max(axis=-1)
     if projection in ("cube strip", "cube cross"):
         return 0.5 * face_side(projection, size)[1] / np.maximum(near * near, 1e-12)
-    return {
-        "lat-long": size[1] / np.pi * np.ones_like(near),
-        "fisheye": size[1] / angle * np.ones_like(near),
-        "mirror ball": 0.25 * size[1] * np.ones_like(near),
-        "perspective": 0.5 * size[1] / (np.tan(0.5 * angle) * np.maximum(way[..., 0] ** 2, 1e-4)),
-    }.get(projection, 0.5 * size[1] / (np.tan(0.25 * angle) * np.maximum(1.0 - way[..., 2], 1e-4)))
+    if projection == "perspective":
+        return 0.5 * size[1] / (np.tan(0.5 * angle) * np.maximum(way[..., 0] ** 2, 1e-4))
+    if projection == "little planet":
+        return 0.5 * size[1] / (np.tan(0.25 * angle) * np.maximum(1.0 - way[..., 2], 1e-4))
+    return {"lat-long": 1.0 / np.pi, "fisheye": 1.0 / angle}.get(projection, 0.25) * size[1] * np.ones_like(near)
 
 
 def pixel_of_cube(image: Array, at: Array, corner: Array, face: Array, projection: str) -> Array:
