@@ -26,6 +26,9 @@ from .specimen import NODE, show_on_sample
 STEPS = 5
 """Pictures of a strip. Chosen by eye."""
 
+_WHOLE_MILLISECONDS = 10.0
+"""From here on times are written without a fraction: below, two digits are what repeats."""
+
 
 def make_example(node: type[Node]) -> Graph:
     """The graph that shows a node on the sample, with values that change it."""
@@ -85,6 +88,13 @@ def describe_cost(node: type[Node]) -> str:
     if issubclass(node, Reader):
         return translate("No pass: the processor decodes the file, whose layers take {textures}.", textures=textures)
     return translate("No pass: the processor computes what it gives.")
+
+
+def describe_time(seconds: float, device: str) -> str:
+    """How long a node takes in full HD with the values of its example, on a device with this description."""
+    milliseconds = 1e3 * seconds
+    digits = f"{milliseconds:.0f}" if milliseconds >= _WHOLE_MILLISECONDS else f"{milliseconds:.2g}"
+    return translate("It takes {milliseconds} ms with {device}.", milliseconds=digits, device=device)
 
 
 def list_names(node: type[Node]) -> tuple[tuple[str, str], ...]:

@@ -43,10 +43,18 @@ def test_the_page_of_the_selected_node_with_pictures_before_and_after(gui) -> No
         ui.move("dialog Node", (0.5, 0.5))
         ui.wheel(-50.0)
         ui.wait(3)
+        timer = ui.editor.node_timer
+        ui.click("measure node")
+        ui.until(lambda: timer.is_measuring)
+        ui.until(lambda: not timer.is_measuring)
+        ui.wait(3)
+        assert timer.seconds[catalogue()["bloom"]] > 0.0 and not timer.fault
         ui.shot("node_page_end.png")
+        ui.click("measure node")
+        ui.until(lambda: timer.is_measuring)
         ui.keys("Escape")
         ui.wait(3)
-        assert not ui.editor.dialogs.any
+        assert not ui.editor.dialogs.any and not timer.is_measuring
 
     gui(body, BLOOM)
 

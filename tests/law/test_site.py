@@ -55,8 +55,8 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
     names = [f"pictures/nodes/{name}.jpg" for name in ("sample", "photograph", *built_in_nodes())]
     names += [f"pictures/nodes/{name}.jpg" for name in ("bloom_photograph", "bloom_strip")]
-    patch.setattr(node_pages, "render_pictures", lambda nodes: ((name, b"") for name in names))
-    patch.setattr(node_pages, "measure_times", lambda nodes: {"bloom": "It takes 80 ms with a device."})
+    drawn = dict.fromkeys(names, b""), {"bloom": "It takes 80 ms with a device."}
+    patch.setattr(node_pages, "illustrate_nodes", lambda: drawn)
     logging.getLogger("mkdocs").setLevel(logging.INFO)
     try:
         build(load_config(str(SITE / "mkdocs.yml"), site_dir=str(folder)))

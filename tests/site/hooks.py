@@ -16,7 +16,7 @@ from typing import Any
 from halation.nodes import built_in_nodes
 from halation.reference.node_page import find_users
 from mkdocs.structure.files import File, Files
-from node_pages import measure_times, render_pictures, write_node_page
+from node_pages import illustrate_nodes, write_node_page
 from preset_pages import picture_files, write_gallery
 
 ROOT = Path(__file__).parents[2]
@@ -57,7 +57,7 @@ def write_files() -> Iterator[tuple[str, str | bytes]]:
         yield f"assets/{name}", Path(__file__).with_name(name).read_text(encoding="utf-8")
     users = find_users()
     nodes = built_in_nodes()
-    pictures, times = dict(render_pictures(nodes.values())), measure_times(nodes.values())
+    pictures, times = illustrate_nodes()
     yield from pictures.items()
     for node in nodes.values():
         yield f"nodes/{node.id}.md", write_node_page(node, users.get(node.id, ()), pictures, times)

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 from pathlib import Path
+from site import addsitedir
 
 import numpy as np
 from halation.cli.gallery import render_display_frames, render_specimen
 from halation.cli.manual import write_node_section
 from halation.graph import Port
 from halation.media.comparison.contact_sheet import make_sheet, write_sheet
-from halation.nodes import Node
+from halation.nodes import Node, built_in_nodes
 from halation.presets import sample
 from halation.reference.node_page import (
     STEPS,
     describe_cost,
     describe_example,
+    describe_time,
     find_main_value,
     list_names,
     list_steps,
@@ -32,6 +36,9 @@ PHOTOGRAPH = Path(__file__).with_name("photograph.jpg")
 
 BEFORE = {"": "pictures/nodes/sample.jpg", "_photograph": "pictures/nodes/photograph.jpg"}
 """The pictures that nodes are shown on, by how names of pictures of nodes end: a render, and a photograph."""
+
+_BATCH = 24
+"""Nodes that one process draws: a driver keeps its programs as long as the process lives."""
 
 _STEP_WIDTH = 192
 """Pixels of the width of a picture of a strip, which is as wide as the text of a page. Chosen by eye."""
@@ -63,6 +70,29 @@ def write_node_page(
         links = ", ".join(f"[{name}](../presets.md#{name})" for name in presets)
         blocks += ["## Presets that use it", links]
     return "\n\n".join(blocks) + "\n"
+
+
+def illustrate_nodes() -> tuple[dict[str, bytes], dict[str, str]]:
+    """Pictures of all nodes with their paths in the site, and the sentences about their times.
+
+    One process after the other draws them, so that what the driver keeps is given back.
+    """
+    pictures: dict[str, bytes] = {}
+    times: dict[str, str] = {}
+    ids = list(built_in_nodes())
+    batches = [ids[start : start + _BATCH] for start in range(0, len(ids), _BATCH)]
+    # MkDocs takes the folder of its hooks out of sys.path again, so each process adds it.
+    folder = (str(Path(__file__).parent),)
+    with ProcessPoolExecutor(1, get_context("spawn"), addsitedir, folder, max_tasks_per_child=1) as process:
+        for drawn, measured in process.map(_illustrate_batch, batches):
+            pictures |= drawn
+            times |= measured
+    return pictures, times
+
+
+def _illustrate_batch(ids: Sequence[str]) -> tuple[dict[str, bytes], dict[str, str]]:
+    nodes = [built_in_nodes()[id] for id in ids]
+    return dict(render_pictures(nodes)), measure_times(nodes)
 
 
 def render_pictures(nodes: Iterable[type[Node]]) -> Iterator[tuple[str, bytes]]:
@@ -108,7 +138,7 @@ def measure_times(nodes: Iterable[type[Node]]) -> dict[str, str]:
             benchmark = measure_graph(renderer, make_example(node), RenderRequest(size=FULL_HD), (1,), 1, 1)
             seconds = sum(timing.median for timing in benchmark.passes if NODE in timing.nodes)
             if seconds:
-                times[node.id] = f"It takes {1e3 * seconds:.0f} ms with {renderer.device.description}."
+                times[node.id] = describe_time(seconds, renderer.device.description)
     finally:
         renderer.close()
     return times

@@ -16,6 +16,7 @@ from ...inputs.default_view import choose_default_view
 from ...language.translation import translate
 from ...renderer import Renderer
 from .request import PreviewRequest
+from .stepwise import StepwiseWork
 
 WIDTH = 320
 """Pixels across of a picture: as on the page of `halation explain --html`."""
@@ -35,7 +36,7 @@ class PassPicture(Struct, frozen=True, eq=False):
     picture: SurfacePicture
 
 
-class PassPictures:
+class PassPictures(StepwiseWork):
     """Runs the passes of a request while somebody looks at them, one pass per `work`.
 
     They run on a renderer of their own, which keeps no results: the one of the preview would leave out passes whose
@@ -44,10 +45,10 @@ class PassPictures:
     """
 
     def __init__(self, renderer: Renderer) -> None:
+        super().__init__()
         self._main = renderer
         self._renderer: Renderer | None = None
         self._request: PreviewRequest | None = None
-        self._steps: Generator[None] | None = None
         self.passes: list[PassPicture] = []
         self.seconds: list[float] = []
         """The times of the passes that were measured, in their order."""
@@ -56,42 +57,26 @@ class PassPictures:
         self.fault = ""
         self.marked = ""
         """The shader function whose passes the panel marks; "" for none."""
-        self.is_shown = False
-        """True if somebody has looked at the passes since the last frame."""
 
     def want(self, request: PreviewRequest) -> None:
         """Say whose passes are shown. Costs nothing if the pixels are the same as before."""
         if self._request is not None and self._request.wants_same_pixels(request):
             return
-        self._stop()
+        self.stop()
         self._request, self.fault = request, ""
         self._steps = self._run(request)
 
-    def work(self) -> bool:
-        """Run the next pass; True while there are more."""
-        if self._steps is None:
-            return False
-        try:
-            next(self._steps)
-        except StopIteration:
-            self._steps = None
-        except HalationError as error:
-            self._steps, self.fault = None, str(error)
-            self.passes, self.seconds = [], []
-        return self._steps is not None
-
     def close(self) -> None:
         """Give back what the device holds."""
-        self._stop()
+        self.stop()
         self._request = None
         if self._renderer is not None:
             self._renderer.close()
             self._renderer = None
 
-    def _stop(self) -> None:
-        if self._steps is not None:
-            self._steps.close()
-        self._steps = None
+    def _note_failure(self, error: HalationError) -> None:
+        self.fault = str(error)
+        self.passes, self.seconds = [], []
 
     def _run(self, request: PreviewRequest) -> Generator[None]:
         if self._renderer is None:

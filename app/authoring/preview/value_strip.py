@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Generator
 
 from halation.nodes import Node
 from msgspec.structs import replace
@@ -15,6 +15,7 @@ from ...renderer import DeviceTexture, Display, Renderer
 from ..background.render_overviews import OverviewPending
 from .picture_job import PictureJob
 from .request import PreviewRequest
+from .stepwise import StepwiseWork
 from .thumbnails import Thumbnails, list_thumbnail_sources
 
 _OUTPUT = "strip"
@@ -22,40 +23,26 @@ _DRAWN_LIKE_NODES = 1.0
 """The scale of the picture from which a small one is made: the sample is small itself."""
 
 
-class ValueStrip:
-    """Draws a strip while somebody looks at it, one part of a pass per `work`."""
+class ValueStrip(StepwiseWork):
+    """Draws a strip while somebody looks at it, one part of a pass per `work`. What cannot be drawn has no picture."""
 
     def __init__(self, renderer: Renderer, display: Display) -> None:
+        super().__init__()
         self._renderer, self._thumbnails = renderer, Thumbnails(renderer, display)
-        self._steps: Iterator[None] | None = None
         self._job: PictureJob | None = None
         self.node: type[Node] | None = None
         self.numbers: tuple[float, ...] = ()
         """The numbers of the value, from low to high; none for a node without one."""
-        self.is_shown = False
-        """True if somebody has looked at the strip since the last frame."""
 
     def want(self, node: type[Node]) -> None:
         """Say whose strip is shown. The same again is free."""
         if node is self.node:
             return
-        self._stop()
+        self.stop()
         self._thumbnails.clear()
         value, self.node = find_main_value(node), node
         self.numbers = tuple(list_steps(value)) if value and drawable_outputs(node) else ()
         self._steps = self._draw(node) if self.numbers else None
-
-    def work(self) -> bool:
-        """Do the next step; True while there are more. What cannot be drawn has no picture."""
-        if self._steps is None:
-            return False
-        try:
-            next(self._steps)
-        except StopIteration:
-            self._steps = None
-        except HalationError:
-            self._stop()
-        return self._steps is not None
 
     def find(self, index: int) -> DeviceTexture | None:
         """The picture for a number, None where it is not drawn yet."""
@@ -64,15 +51,19 @@ class ValueStrip:
 
     def close(self) -> None:
         """Give back what the device holds."""
-        self._stop()
+        self.stop()
         self._thumbnails.close()
         self.node, self.numbers = None, ()
 
-    def _stop(self) -> None:
+    def stop(self) -> None:
+        """End what is under way. What it has drawn so far stays."""
         self._stop_job()
-        self._steps = None
+        super().stop()
 
-    def _draw(self, node: type[Node]) -> Iterator[None]:
+    def _note_failure(self, error: HalationError) -> None:
+        self._stop_job()
+
+    def _draw(self, node: type[Node]) -> Generator[None]:
         value = find_main_value(node)
         assert value is not None
         graph = make_example(node)
@@ -81,7 +72,7 @@ class ValueStrip:
             with name_specimen(node):
                 yield from self._draw_picture(graph.set(Port(NODE, value.name), number), index)
 
-    def _draw_picture(self, graph: Graph, index: int) -> Iterator[None]:
+    def _draw_picture(self, graph: Graph, index: int) -> Generator[None]:
         """Compute the first output of a graph, and draw it while its result is on the device."""
         ports = {_OUTPUT: Port(OUTPUTS, next(iter(graph.outputs)))}
         request = PreviewRequest(graph, ports, {}, _DRAWN_LIKE_NODES, 1, None)

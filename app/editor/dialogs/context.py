@@ -8,6 +8,7 @@ from ..toolkit.context import PanelContext
 
 if TYPE_CHECKING:
     from ...authoring.preview import Preview
+    from ...authoring.preview.node_timer import NodeTimer
     from ...authoring.preview.value_strip import ValueStrip
     from ...authoring.session import Session
     from ..shared.action import Actions
@@ -25,6 +26,7 @@ class DialogContext(PanelContext, frozen=True):
     actions: Actions
     clipboard: SystemText
     strip: ValueStrip
+    node_timer: NodeTimer
 
     @classmethod
     def compose(cls, services: Services) -> DialogContext:
@@ -38,4 +40,5 @@ class DialogContext(PanelContext, frozen=True):
             services.actions,
             services.clipboard,
             services.strip,
+            services.node_timer,
         )

@@ -16,14 +16,23 @@ from imgui_bundle import ImVec2, imgui
 from ...authoring.preview.preview import Preview
 from ...graph import INPUTS, Graph, Port, Unknown, signature
 from ...language.translation import translate
-from ...reference.node_page import describe_cost, describe_example, find_main_value, find_users, list_names
-from ...reference.specimen import CANVAS
+from ...reference.node_page import (
+    describe_cost,
+    describe_example,
+    describe_time,
+    find_main_value,
+    find_users,
+    list_names,
+)
+from ...reference.specimen import CANVAS, drawable_outputs
 from ..fields.numbers import describe_default, describe_value
 from ..shared.declared_words import describe_type, head_type, name_preset, name_value
 from ..theme.style import ui_scale, vec4
 from ..toolkit.buttons import close_button
 from ..toolkit.dialogs import backdrop, dialog, escape_pressed
-from ..toolkit.words import draw_dim, draw_wrapped, font
+from ..toolkit.labels import make_label
+from ..toolkit.places import record
+from ..toolkit.words import draw_dim, draw_wrapped, font, tip
 
 if TYPE_CHECKING:
     from ...graph import Item, Signature
@@ -120,10 +129,31 @@ class NodePage:
 
     def _draw_reference(self, id: str, node: type[Node]) -> None:
         """Draw what the declaration does not say: cost, presets and names in other programs."""
-        cost, presets = self._describe_cost(id, node), find_users().get(node.id, ())
-        self._draw_text(translate("What it costs"), cost)
+        presets = find_users().get(node.id, ())
+        self._draw_cost(id, node)
         self._draw_text(translate("Presets that use it"), ", ".join(map(name_preset, presets)))
         self._draw_rows(translate("In other programs"), list_names(node))
+
+    def _draw_cost(self, id: str, node: type[Node]) -> None:
+        """Draw what the node costs, with its time on this device or a button that measures it."""
+        timer = self._context.node_timer
+        timer.is_shown = True
+        if timer.is_measuring and timer.node is not node:
+            timer.stop()
+        seconds, cost = timer.seconds.get(node), self._describe_cost(id, node)
+        measured = describe_time(seconds, self._context.preview.renderer.device.description) if seconds else ""
+        fault = timer.fault if timer.node is node else ""
+        self._draw_text(translate("What it costs"), " ".join(filter(None, (cost, measured, fault))))
+        if not drawable_outputs(node):
+            return
+        imgui.begin_disabled(timer.is_measuring)
+        label = translate("Measuring…") if timer.is_measuring else translate("Measure the time")
+        clicked = imgui.button(make_label(label, "measure node"))
+        imgui.end_disabled()
+        record(self._context, "measure node")
+        tip(translate("Measures how long it takes on this device, at 1920 x 1080"))
+        if clicked:
+            timer.measure(node)
 
     def _describe_cost(self, id: str, node: type[Node]) -> str:
         """The cost of the node on the sample, and the time that it took in the graph that is open, if that is known."""

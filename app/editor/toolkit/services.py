@@ -21,6 +21,7 @@ from .context import Interface
 if TYPE_CHECKING:
     from ...authoring.preferences import PreferenceStore
     from ...authoring.preview import Preview
+    from ...authoring.preview.node_timer import NodeTimer
     from ...authoring.preview.pass_pictures import PassPictures
     from ...authoring.preview.value_strip import ValueStrip
     from ...authoring.recovery.recovery import RecoveryFile
@@ -52,6 +53,7 @@ class Services(Struct):
     coloring: ColorFallback
     passes: PassPictures
     strip: ValueStrip
+    node_timer: NodeTimer
     log: Log = field(default_factory=Log)
     shaders: ShaderFiles = field(default_factory=ShaderFiles)
     library: PresetLibrary = field(default_factory=PresetLibrary)

@@ -12,6 +12,7 @@ from ...authoring.log import Log
 from ...authoring.preferences import PreferenceStore, state_folder
 from ...authoring.preview import Preview
 from ...authoring.preview.color_fallback import ColorFallback
+from ...authoring.preview.node_timer import NodeTimer
 from ...authoring.preview.pass_pictures import PassPictures
 from ...authoring.preview.value_strip import ValueStrip
 from ...authoring.recovery.recovery import RecoveryFile
@@ -68,6 +69,7 @@ def assemble(device: Device, sandbox: Sandbox, state: Path | None = None) -> Edi
         ColorFallback(sandbox),
         PassPictures(renderer),
         ValueStrip(renderer, display),
+        NodeTimer(renderer),
         log,
     )
 
@@ -104,6 +106,7 @@ def take_apart(editor: Editor) -> None:
     editor.store.flush()
     editor.probe.close()
     editor.strip.close()
+    editor.node_timer.stop()
     editor.display.close()
     editor.passes.close()
     editor.preview.close()

@@ -120,7 +120,7 @@ class FrameUpdater:
         is_urgent = editor.timeline.playing or editor.viewer.brush.stroke != ""
         self.is_working = preview.work(PLAY_BUDGET if is_urgent else FRAME_BUDGET)
         self.is_working = self._run_passes(flat, scale) or self.is_working
-        self.is_working = self._draw_strip() or self.is_working
+        self.is_working = self._work_on_page() or self.is_working
         if not self.is_working and not editor.interface.dragging and not editor.canvas.panning:
             self.is_working = self._load_nodes()
 
@@ -144,13 +144,15 @@ class FrameUpdater:
         passes.want(PreviewRequest(session.root, {A: port}, dict(session.bindings), scale, session.time.frame, None))
         return passes.work()
 
-    def _draw_strip(self) -> bool:
-        """Draw the next part of the strip on the page of a node, if it is open; True while there is more."""
-        strip = self._editor.strip
+    def _work_on_page(self) -> bool:
+        """Draw the next part of the strip on the page of a node, or measure the node; True while there is more."""
+        strip, timer = self._editor.strip, self._editor.node_timer
+        if not timer.is_shown:  # the page is closed: nobody waits for the time, and it takes memory
+            timer.stop()
         if not strip.is_shown or self._editor.preview.busy:
             return False
-        strip.is_shown = False
-        return strip.work()
+        strip.is_shown = timer.is_shown = False
+        return strip.work() or timer.work()
 
     def _play(self, session: Session) -> None:
         """Go to the frame that playback shows now."""
