@@ -55,6 +55,7 @@ def desk(tmp_path: Path) -> Editor:
         coloring=none,
         passes=none,
         strip=none,
+        node_timer=none,
         log=log,
     )
 
