@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import os
 import re
-from dataclasses import dataclass
 from pathlib import Path
 
 from halation import presets
+from msgspec import Struct
 
 from ..errors import InputError, UsageError
 
@@ -20,8 +20,7 @@ ROOT_VARIABLE = "HALATION_ROOT"
 """The environment variable that does what `--root` does, for every command and for Python."""
 
 
-@dataclass(frozen=True)
-class Sandbox:
+class Sandbox(Struct, frozen=True):
     """Which files may be read and written: those below the folder `root`, all of them where it is ""."""
 
     root: str

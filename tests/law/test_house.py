@@ -193,15 +193,8 @@ def find_mutable(path: Path, tree: ast.Module) -> list[str]:
     return tops + [f"{label(path)}:{item.lineno}" for item in ast.walk(tree) if isinstance(item, ast.Global)]
 
 
-DATACLASSES = {
-    "app/graph/graph.py",
-    "app/graph/model.py",
-    "app/resources/sandbox.py",
-    "nodes/_declare/node.py",
-    "nodes/_declare/sockets.py",
-}
-"""Where values are dataclasses: graphs and nodes, those of plug-ins too, are changed by `dataclasses.replace`, and for
-the sandbox alone `halation --help` would load msgspec, which takes ten times as long."""
+DATACLASSES = {"app/graph/graph.py", "app/graph/model.py", "nodes/_declare/node.py", "nodes/_declare/sockets.py"}
+"""Where values are dataclasses: graphs and nodes, those of plug-ins too, are changed by `dataclasses.replace`."""
 
 
 def test_values_are_structs() -> None:
