@@ -104,9 +104,9 @@ class Thumbnails:
         self._manager = self._coloring.resolve(color or ColorSettings())
         for path, subject in subjects.items():
             thumbnail = self._thumbnails.get(path)
+            self._waiting.pop(path, None)
             if thumbnail is not None and thumbnail.source.is_preferred_to(subject):
                 continue
-            self._waiting.pop(path, None)
             if thumbnail is not None and thumbnail.source.key == subject.key:
                 self._thumbnails[path] = _Thumbnail(thumbnail.texture, subject)
             else:
