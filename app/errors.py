@@ -99,8 +99,13 @@ class ShaderError(DeviceError):
 
     def __init__(self, node: str, file: str, line: int, fault: str) -> None:
         self.file, self.line, self.fault = file, line, fault
-        place = f"{file}, line {line}" if line else file
-        super().__init__(f"{describe_owner(node)}: {place}: {fault}" if node else f"{place}: {fault}", node=node)
+        super().__init__(f"{describe_owner(node)}: {self.sentence}" if node else self.sentence, node=node)
+
+    @property
+    def sentence(self) -> str:
+        """The fault with its file and line, without the node."""
+        place = f"{self.file}, line {self.line}" if self.line else self.file
+        return f"{place}: {self.fault}"
 
 
 class RenderError(HalationError):

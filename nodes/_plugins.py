@@ -195,7 +195,8 @@ def _load(point: EntryPoint) -> Plugin:
     try:
         spec = find_spec(plugin.namespace)
         if spec is None or not spec.submodule_search_locations:
-            return plugin._replace(fault=f"its entry point names the package '{plugin.namespace}', which is not there")
+            fault = f"its entry point names the package '{plugin.namespace}', which is not there"
+            return plugin._replace(fault=f"{fault}: correct the entry point, or install {plugin.package} again")
         folder = next(
             (path for path in map(Path, spec.submodule_search_locations) if (path / "nodes").is_dir()),
             Path(spec.submodule_search_locations[0]),
@@ -230,13 +231,16 @@ def refuse_double_ids(files: Iterable[tuple[str, str]], folder: str) -> None:
 
 
 def _refuse_shared_ids(loaded: list[Plugin]) -> Iterator[Plugin]:
-    """Refuse all plug-ins that bring a node which another one brings too: no graph could say which it means."""
+    """Refuse all plug-ins that bring a node which another one brings too: no graph could say which it means.
+
+    They share an import name and so a folder: pip removes files of both when it uninstalls one.
+    """
     counts = Counter(id for plugin in loaded for id in plugin.nodes)
     for plugin in loaded:
         shared = next((id for id in plugin.nodes if counts[id] > 1), "")
         if shared:
             rivals = " and ".join(str(rival) for rival in loaded if shared in rival.nodes)
-            fault = f"{rivals} both bring a node '{shared}': uninstall one of them"
+            fault = f"{rivals} both bring a node '{shared}': uninstall both, then install one of them"
             yield plugin._replace(nodes={}, fault=fault)
         else:
             yield plugin

@@ -171,8 +171,8 @@ GLSL = """\
 
 `NAME` stands for each picture that the function reads, and `T` for its type (`vec4` for an Image, `float` for a
 Field). What lies outside of a picture follows the `edge` of the draw. A pointwise function may use all but the pictures
-by name: its pictures are parameters. Programs are GLSL 4.10. Functions, sockets and values need names that GLSL and
-the pass do not use: not `length`, `mix` or `pixel`.
+by name: its pictures are parameters. Programs are GLSL 4.10. Functions, their parameters, sockets and values need
+names that GLSL and the pass do not use: not `length`, `distance`, `mix` or `pixel`.
 """
 INCLUDES = """\
 ## GLSL: libraries

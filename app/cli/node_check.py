@@ -32,9 +32,9 @@ def check_nodes(name: str, as_json: bool, sandbox: Sandbox) -> int:
     finally:
         renderer.close()
     reported = {sentence for sentences in faults.values() for sentence in sentences}
-    for shader, sentences in _find_file_faults(chosen, classes):
-        new_faults = [sentence for sentence in sentences if sentence not in reported]
-        faults |= {shader: new_faults} if new_faults else {}
+    for subject, sentences in _find_file_faults(chosen, classes):
+        if new_faults := [sentence for sentence in sentences if sentence not in reported]:
+            faults[subject] = [*faults.get(subject, ()), *new_faults]
     if as_json:
         print_json({"faults": faults})
     else:
@@ -82,13 +82,14 @@ def _choose_nodes(name: str, plugins: tuple[Plugin, ...]) -> tuple[Mapping[str, 
 
 
 def _find_file_faults(chosen: list[Plugin], classes: Mapping[str, type[Node]]) -> Iterator[tuple[str, list[str]]]:
-    """The faults in each shader file of the chosen plug-ins, or in those of single nodes."""
+    """The faults in each shader file of the chosen plug-ins, or in those of single nodes, by the node or the file."""
     from ..compiler import load_library
     from ..regression.node_promises import find_file_faults
 
-    names = [name for name in load_library().texts if not name.startswith("viewer/")]
+    library = load_library()
+    names = [name for name in library.texts if not name.startswith("viewer/")]
     namespaces = tuple(f"{plugin.namespace}/" for plugin in chosen)
-    shaders = {node.shader for node in classes.values()}
+    owners = {node.shader: id for id, node in classes.items()}
     for name in names:
-        if name.startswith(namespaces) if chosen else name in shaders:
-            yield name, list(find_file_faults(name, names))
+        if name.startswith(namespaces) if chosen else name in owners:
+            yield owners.get(name) or name, list(find_file_faults(name, names))

@@ -199,7 +199,7 @@ class Library(Record, frozen=True):
         for include, line in text.includes.items():
             circle = include in (*trail, name)
             if circle or include not in self.texts:
-                hint = "" if circle else did_you_mean(include, self.texts)
+                hint = "" if circle else did_you_mean(f"{include}.glsl", [f"{name}.glsl" for name in self.texts])
                 fault = "goes in a circle" if circle else f"names no shader file{hint}"
                 raise ShaderError(asker, text.file, line, f'#include "{include}.glsl" {fault}')
             self._include(include, asker, (*trail, name), texts)

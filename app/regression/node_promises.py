@@ -21,6 +21,7 @@ from ..glsl.taken_names import TAKEN_NAMES
 from ..graph import Graph, Input, Output, Port
 
 if TYPE_CHECKING:
+    from ..compiler import Library
     from ..glsl.text import GlslFunction
     from ..renderer import Renderer, RenderRequest
 
@@ -71,7 +72,7 @@ def find_shader_faults(node: type[Node]) -> Iterator[str]:
     try:
         function = load_library().function(node.shader, node.function, node.id)
     except ShaderError as fault:
-        yield str(fault).partition(": ")[2]
+        yield fault.sentence
         return
     declared = tuple(
         (node.inputs[name].glsl if name in node.inputs else node.values[name].glsl, name)
@@ -100,12 +101,10 @@ def find_file_faults(name: str, names: Iterable[str]) -> Iterator[str]:
     try:
         text = library.texts[name]
         library.closure((name,), name)
-        others = {
-            _signature(function) for other in names if other != name for function in library.texts[other].all_functions
-        }
     except ShaderError as fault:
-        yield str(fault).partition(": ")[2]
+        yield fault.sentence
         return
+    others = {signature for other in names if other != name for signature in _list_signatures(library, other)}
     for function in text.all_functions:
         place = f"{text.file}, line {function.line}: "
         if function.name in TAKEN_NAMES:
@@ -118,6 +117,14 @@ def find_file_faults(name: str, names: Iterable[str]) -> Iterator[str]:
     for word in _PASS_TEXT:
         if re.search(rf"(?<![\w]){re.escape(word)}", text.body):
             yield f"{text.file}: '{word.strip()}' is written by the compiler: leave it out"
+
+
+def _list_signatures(library: Library, name: str) -> list[tuple[str, tuple[str, ...]]]:
+    """The signatures of all functions of a file; none of one that cannot be read, whose fault is its own."""
+    try:
+        return [_signature(function) for function in library.texts[name].all_functions]
+    except ShaderError:
+        return []
 
 
 def _signature(function: GlslFunction) -> tuple[str, tuple[str, ...]]:

@@ -7,7 +7,7 @@ farther than it says would show seams where a large picture is rendered in tiles
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from halation.nodes import Node, Source, Temporal
@@ -29,6 +29,10 @@ _SIZE = (151, 83)
 
 _PARTS = (Region(0, 0, 20, 13), Region(70, 40, 11, 9), Region(140, 0, 11, 83))
 """A corner, the middle and a border."""
+
+_LENGTH = 4.6
+"""Pixels: more than an `overlap` that was written for one length, and between two pixels, as most lengths are. Half of
+it is hardly more than what `near` interpolates, twice as much leaves less out. Chosen by judgement."""
 
 
 def find_read_areas(
@@ -77,13 +81,31 @@ def find_overlap_faults(renderer: Renderer, node: type[Node]) -> Iterator[str]:
     pictures = make_pictures(node, _SIZE, np.random.default_rng(9))
     if not pictures or issubclass(node, Source | Temporal):
         return
-    subject = node(**find_changing_values(node))
+    values = find_changing_values(node)
+    longer_values = _lengthen(node)
+    subjects = [node(**values), node(**(values | longer_values))] if longer_values else [node(**values)]
+    too_far = {name for subject in subjects for name in _find_far_outputs(renderer, subject, pictures)}
+    yield from (f"the output '{name}' reads farther than an `overlap` in passes() says" for name in sorted(too_far))
+
+
+def _find_far_outputs(renderer: Renderer, subject: Node, pictures: Pictures) -> Iterator[str]:
+    """The outputs with another part where the pictures are poisoned outside of what the node says that it reads."""
     graph, request = make_node_request(subject, pictures)
     whole = renderer.render(graph, request)
-    too_far: set[str] = set()
     for part in _PARTS:
         for name, areas in find_read_areas(renderer, graph, pictures, part).items():
             poisoned = renderer.render(*make_node_request(subject, poison(pictures, areas)))
             if poisoned[name][cut_out(part)].tobytes() != whole[name][cut_out(part)].tobytes():
-                too_far.add(name)
-    yield from (f"the output '{name}' reads farther than an `overlap` in passes() says" for name in sorted(too_far))
+                yield name
+
+
+def _lengthen(node: type[Node]) -> dict[str, Any]:
+    """The numbers that are lengths, so long that a node whose `overlap` does not follow them reads too far.
+
+    At their defaults, fractions of the height are often less than a pixel of a picture as small as these.
+    """
+    return {
+        value.name: min(_LENGTH * unit, value.maximum)
+        for value in node.values.values()
+        if value.type == "float" and (unit := {"px": 1.0, "height": 1.0 / _SIZE[1]}.get(value.unit or ""))
+    }

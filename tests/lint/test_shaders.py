@@ -32,8 +32,8 @@ def write_graph(folder: Path, *code: str) -> Path:
 @pytest.mark.parametrize(
     ("include", "sentence"),
     [
-        ("lib/colour.glsl", "#include \"lib/colour.glsl\" names no shader file; did you mean 'lib/color'?"),
-        ("Lib/color.glsl", "#include \"Lib/color.glsl\" names no shader file; did you mean 'lib/color'?"),
+        ("lib/colour.glsl", "#include \"lib/colour.glsl\" names no shader file; did you mean 'lib/color.glsl'?"),
+        ("Lib/color.glsl", "#include \"Lib/color.glsl\" names no shader file; did you mean 'lib/color.glsl'?"),
         ("nowhere.glsl", '#include "nowhere.glsl" names no shader file'),
     ],
 )

@@ -214,7 +214,10 @@ def test_an_entry_point_that_names_nothing_is_a_fault(site: Site) -> None:
     site.install("acme-tone", "1.0")
     (site.folder / "acme_tone-1.0.dist-info" / "entry_points.txt").write_text("[halation.nodes]\nx = acme_gone\n")
     forget()
-    sentence = "its entry point names the package 'acme_gone', which is not there"
+    sentence = (
+        "its entry point names the package 'acme_gone', which is not there: correct the entry point, or install "
+        "acme-tone again"
+    )
     assert faults() == {"acme-tone": sentence}
     unknown = Unknown("acme_tone.dim", {"type": "acme_tone.dim", "package": "Acme_Tone==1.0"})
     problem, *_ = problems(Graph(nodes={"dim": unknown}))
@@ -225,7 +228,9 @@ def test_two_plugins_with_one_id_are_both_refused_by_name(site: Site) -> None:
     site.install("acme-tone", "1.0")
     site.install("acme-copy", "0.5", module="acme_tone")
     site.install("other-tone", "3.0")
-    sentence = "acme-copy 0.5 and acme-tone 1.0 both bring a node 'acme_tone.dim': uninstall one of them"
+    sentence = (
+        "acme-copy 0.5 and acme-tone 1.0 both bring a node 'acme_tone.dim': uninstall both, then install one of them"
+    )
     assert faults() == {"acme-copy": sentence, "acme-tone": sentence, "other-tone": ""}
     assert "acme_tone.dim" not in catalogue() and "other_tone.dim" in catalogue()
 

@@ -196,6 +196,23 @@ FAULTY = {
         "vec4 acme_glow_soft_glow(float amount) { return image_at(pixel - ivec2(2, 0)); }\n",
         "the output 'out' reads farther than an `overlap` in passes() says",
     ),
+    "a longer overlap": (
+        CLASS.replace("Pointwise", "Draw, Drawn, Filter")
+        .replace("SoftGlow(Draw, Drawn, Filter)", "SoftGlow(Filter)")
+        .replace('1.0, unit="ratio"', '0.02, unit="height"')
+        .replace("= 0.5", "= 0.004")
+        + """
+    def passes(self, draw: Draw) -> Drawn:
+        return draw("acme_glow_soft_glow", self.image, overlap=1, amount=self.amount)
+""",
+        "vec4 acme_glow_soft_glow(float amount) { return image_at(pixel - ivec2(int(ceil(amount)), 0)); }\n",
+        "the output 'out' reads farther than an `overlap` in passes() says",
+    ),
+    "a name without that of the package": (
+        CLASS,
+        "float half_of(float part) { return 0.5 * part; }\n" + SHADER.replace("BODY", "image"),
+        "acme_glow.soft_glow: acme_glow/shaders/glow/soft_glow.glsl, line 1: the function 'half_of' of a plug-in must",
+    ),
     "code that fails": (
         CLASS.replace("Pointwise", "Draw, Drawn, Filter").replace("SoftGlow(Draw, Drawn, Filter)", "SoftGlow(Filter)")
         + """
@@ -222,6 +239,10 @@ def test_what_a_node_does_not_keep_is_said(site: Path, tmp_path: Path, case: str
     for words in ((), ("acme_glow.soft_glow",)) if case == "range" else ((),):
         result = halation(copy, "nodes", "--check", *words)
         assert result.returncode == 1 and sentence in result.stdout, result
+        lines = result.stdout.splitlines()
+        assert ": ok" not in result.stdout and len({*lines}) == len(lines), result
+        assert all(line.startswith("acme_glow.soft_glow: ") for line in lines), result
+        assert result.stderr.endswith("1 node: 1 to mend\n"), result
 
 
 def test_a_plugin_that_cannot_be_loaded_keeps_nothing(site: Path, tmp_path: Path) -> None:
