@@ -104,8 +104,10 @@ def _lengthen(node: type[Node]) -> dict[str, Any]:
 
     At their defaults, fractions of the height are often less than a pixel of a picture as small as these.
     """
-    return {
-        value.name: min(_LENGTH * unit, value.maximum)
-        for value in node.values.values()
-        if value.type == "float" and (unit := {"px": 1.0, "height": 1.0 / _SIZE[1]}.get(value.unit or ""))
-    }
+    longer: dict[str, float] = {}
+    for value in node.values.values():
+        pixel = {"px": 1.0, "height": 1.0 / _SIZE[1]}.get(value.unit or "")
+        if pixel and isinstance(value.default, float):
+            length = min(max(_LENGTH * pixel, value.minimum), value.maximum)
+            longer |= {value.name: length} if length > value.default else {}
+    return longer
