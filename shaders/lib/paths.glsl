@@ -27,36 +27,51 @@ vec4 path_area(vec4 segment, vec2 corner) {
 }
 
 const int PATH_UNION = 0, PATH_SUBTRACT = 1, PATH_INTERSECT = 2, PATH_MAX = 3, PATH_MIN = 4, PATH_DIFFERENCE = 5;
+const int PATH_PLUS = 6;
+
+// What a shape does to a mask, in one number: the mode twice, and how much of the mask stays, or how much of the shape
+// is added to it or taken away. The mode that is most used is 0, which keeps all bits.
+vec4 path_pack(vec4 cover, int mode, float opacity, bool invert) {
+    if (invert) cover = 1.0 - cover;
+    vec4 amount = mode == PATH_INTERSECT || mode == PATH_MIN ? 1.0 - opacity * (1.0 - cover) : cover * opacity;
+    return clamp(amount, 0.0, 1.0) + 2.0 * float(mode);
+}
 
 // A mask with one more shape; the last mode is their sum.
-float path_combine(float below, float cover, int mode, float opacity, bool invert) {
-    if (invert) cover = 1.0 - cover;
-    float amount = cover * opacity, kept = 1.0 - opacity * (1.0 - cover);
+float path_combine(float below, float change) {
+    int mode = min(int(0.5 * change), PATH_PLUS);
+    float amount = change - 2.0 * float(mode);
     if (mode == PATH_UNION) return below + amount * (1.0 - below);
     if (mode == PATH_SUBTRACT) return below * (1.0 - amount);
-    if (mode == PATH_INTERSECT) return below * kept;
+    if (mode == PATH_INTERSECT) return below * amount;
     if (mode == PATH_MAX) return max(below, amount);
-    if (mode == PATH_MIN) return min(below, kept);
+    if (mode == PATH_MIN) return min(below, amount);
     if (mode == PATH_DIFFERENCE) return abs(below - amount);
     return min(below + amount, 1.0);
 }
 
-// The distance of four pixels to the nearest of some chords, and the feather there. `place` is the middle of the first.
-void path_nearest(int first, int count, vec2 place, int bits, out vec4 distances, out vec4 feathers) {
+// The distance of four pixels to the nearest of some chords, which chord it is, and where on it. `place` is the middle of
+// the first pixel.
+void path_nearest(
+    int first, int count, vec2 place, int bits, out vec4 distances, out vec4 nearest, out vec4 along
+) {
     vec4 squares = vec4(1e30), across = place.x + vec4(0.0, 1.0, 2.0, 3.0);
-    feathers = vec4(0.0);
-    for (int n = 4 * first; n < 4 * (first + count); ++n) {
-        int chord = 2 * int(nearest_at(path_cell(n >> 2, bits))[n & 3]);
-        vec4 ends = chords_at(path_cell(chord, bits));
-        vec2 edge = ends.zw - ends.xy, widths = chords_at(path_cell(chord + 1, bits)).xy;
-        vec4 x = across - ends.x;
-        float y = place.y - ends.y;
-        vec4 t = clamp((x * edge.x + y * edge.y) / max(dot(edge, edge), 1e-12), 0.0, 1.0);
-        x -= t * edge.x;
-        vec4 away = y - t * edge.y, square = x * x + away * away;
-        bvec4 nearer = lessThan(square, squares);
-        squares = mix(squares, square, nearer);
-        feathers = mix(feathers, mix(vec4(widths.x), vec4(widths.y), t), nearer);
+    nearest = along = vec4(0.0);
+    for (int n = first; n < first + count; ++n) {
+        vec4 four = nearest_at(path_cell(n, bits));
+        for (int k = 0; k < 4; ++k) {
+            vec4 ends = chords_at(path_cell(2 * int(four[k]), bits));
+            vec2 edge = ends.zw - ends.xy;
+            vec4 x = across - ends.x;
+            float y = place.y - ends.y;
+            vec4 t = clamp((x * edge.x + y * edge.y) / max(dot(edge, edge), 1e-12), 0.0, 1.0);
+            x -= t * edge.x;
+            vec4 away = y - t * edge.y, square = x * x + away * away;
+            bvec4 nearer = lessThan(square, squares);
+            squares = mix(squares, square, nearer);
+            nearest = mix(nearest, vec4(four[k]), nearer);
+            along = mix(along, t, nearer);
+        }
     }
     distances = sqrt(squares);
 }
@@ -76,7 +91,7 @@ float path_soften(float cover, float inside, float feather) {
     return mix(cover, soft, min(feather, 1.0));
 }
 
-// How much an outline covers of four pixels beside each other: four texels by sixteen for each entry of a tile, 2^across
+// What an outline does to four pixels beside each other, packed: four texels by sixteen for each entry of a tile, 2^across
 // of which lie side by side.
 vec4 path_covers(int bits, int across, int count, int beyond) {
     ivec2 block = pixel >> ivec2(2, 4), within = ivec2(4, 1) * (pixel & ivec2(3, 15));
@@ -89,18 +104,26 @@ vec4 path_covers(int bits, int across, int count, int beyond) {
     int first = int(segments.x), last = first + int(segments.y);
     for (int n = first; n < last; ++n) sum += path_area(segments_at(path_cell(n, bits)), corner);
     vec4 cover = min(abs(sum), 1.0);
-    if (entry.z == 0.0) return cover;
-    vec2 tile = entries_at(path_cell(at + 1, bits)).xy - float(beyond);
     vec4 facts = shapes_at(path_cell(2 * int(entry.x), bits));
-    float growth = shapes_at(path_cell(2 * int(entry.x) + 1, bits)).x;
-    vec4 distances, feathers;
+    int mode = int(facts.x);
+    bool invert = facts.z > 0.5;
+    if (entry.z == 0.0) return path_pack(cover, mode, facts.y, invert);
+    vec2 tile = entries_at(path_cell(at + 1, bits)).xy - float(beyond);
+    vec2 more = shapes_at(path_cell(2 * int(entry.x) + 1, bits)).xy;  // growth, and whether points have feathers
+    vec4 distances, chords, along, feathers = vec4(facts.w);
     path_nearest(
-        int(entry.y), int(entry.z), tile * float(PATH_TILE) + vec2(within) + 0.5, bits, distances, feathers
+        int(entry.y), int(entry.z), tile * float(PATH_TILE) + vec2(within) + 0.5, bits, distances, chords, along
     );
-    vec4 inside = mix(-distances, distances, greaterThanEqual(cover, vec4(0.5)))+ growth;
-    if (growth > 0.0) return max(cover, clamp(inside + 0.5, 0.0, 1.0));
-    for (int n = 0; n < 4; ++n) cover[n] = path_soften(cover[n], inside[n], facts.w + feathers[n]);
-    return cover;
+    vec4 inside = mix(-distances, distances, greaterThanEqual(cover, vec4(0.5))) + more.x;
+    if (more.x > 0.0) return path_pack(max(cover, clamp(inside + 0.5, 0.0, 1.0)), mode, facts.y, invert);
+    for (int n = 0; n < 4; ++n) {
+        if (more.y > 0.0) {
+            vec2 ends = chords_at(path_cell(2 * int(chords[n]) + 1, bits)).xy;
+            feathers[n] += mix(ends.x, ends.y, along[n]);
+        }
+        cover[n] = path_soften(cover[n], inside[n], feathers[n]);
+    }
+    return path_pack(cover, mode, facts.y, invert);
 }
 
 // The mask with all outlines in a pixel.
@@ -111,9 +134,8 @@ float path_cover(int bits, int across, int beyond, int columns) {
     int first = int(entries.x), last = first + int(entries.y);
     if (first == last) return covered * entries.z + entries.w;
     for (int n = first; n < last; ++n) {
-        vec4 facts = shapes_at(path_cell(2 * int(entries_at(path_cell(PATH_ENTRY * n, bits)).x), bits));
         ivec2 cell = ivec2(n & ((1 << across) - 1), n >> across) * ivec2(4, 16) + ivec2(within.x >> 2, within.y);
-        covered = path_combine(covered, covers_at(cell)[within.x & 3], int(facts.x), facts.y, facts.z > 0.5);
+        covered = path_combine(covered, covers_at(cell)[within.x & 3]);
     }
     return covered;
 }

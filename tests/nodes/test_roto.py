@@ -93,6 +93,20 @@ def test_a_soft_edge_is_a_smooth_step_of_the_distance(run, name, feather):
     np.testing.assert_allclose(mask, 3.0 * t**2 - 2.0 * t**3, atol=tolerance)
 
 
+@pytest.mark.parametrize(("feather", "each"), [(0.2, 0.0), (0.0, 0.2), (0.1, 0.1)])
+def test_few_chords_of_a_soft_edge_are_as_exact_as_hard_coverage(run, feather, each):
+    """Handles across the way: most of each curve is passed in its middle, and its ends are sharp bends."""
+    rows = np.reshape(wave(60, 7), (60, 7))
+    rows[:, 6] = each
+    points = join_points(map(tuple, rows.tolist()))
+    mask = mask_of(run, RotoShape(points=points, feather=feather))
+    width = 0.2 * HEIGHT
+    t = 0.5 + measure_distance(trace(RotoShape(points=points), 100), SIZE) / width
+    places = np.clip(t + np.linspace(-0.5, 0.5, 9)[:, None, None] / width, 0.0, 1.0)
+    expected = np.average(3.0 * places**2 - 2.0 * places**3, axis=0, weights=[0.5, *[1.0] * 7, 0.5])
+    np.testing.assert_allclose(mask, expected, atol=2e-3)
+
+
 def test_a_feather_can_differ_from_point_to_point(run):
     rows = [(0.2, -1.0), (0.8, -1.0, 0.0, 0.0, 0.0, 0.0, 0.2), (0.8, 2.0, 0.0, 0.0, 0.0, 0.0, 0.2), (0.2, 2.0)]
     mask = mask_of(run, RotoShape(points=join_points(rows)), size=(100, 100))

@@ -10,6 +10,9 @@ from .outline_curves import Array
 _ROUNDING = 0.01
 """Pixels: places in 32 bits are exact to this up to 131,072 pixels."""
 
+_NEAR = 8192.0
+"""Pixels up to which distances in 32 bits are exact to a third of that. They take half the time of those in 64."""
+
 
 class NearChords(NamedTuple):
     """Numbers of chords by tile, those of a tile after each other."""
@@ -30,7 +33,9 @@ def find_candidates(ends: Array, reach: float, grid: TileGrid) -> NearChords:
     while side < TILE * max(grid.across, grid.down):
         side *= 2
     squares, chord, sizes = np.zeros((1, 2), np.intp), np.arange(len(ends)), np.array([len(ends)])
-    ends = np.ascontiguousarray((ends + grid.corner).T)
+    ends = ends + grid.corner
+    is_near = side <= _NEAR and np.abs(ends).max(initial=0.0) <= _NEAR
+    ends = np.ascontiguousarray(ends.T, np.float32 if is_near else np.float64)
     while True:
         squares, chord, sizes = _keep_near(ends, squares, chord, sizes, side, reach)
         if side == TILE or not len(chord):
@@ -65,7 +70,7 @@ def _keep_near(
     if not len(chord):
         return squares[:0], chord, sizes[:0]
     starts = np.cumsum(sizes) - sizes
-    middle_x, middle_y = (np.repeat((squares[:, axis] + 0.5) * side, sizes) for axis in (0, 1))
+    middle_x, middle_y = (np.repeat(((squares[:, axis] + 0.5) * side).astype(ends.dtype), sizes) for axis in (0, 1))
     away = _measure_distance(ends[:, chord], middle_x, middle_y)
     radius = side * 0.5**0.5 + _ROUNDING
     limit = np.minimum(np.minimum.reduceat(away, starts) + 2.0 * radius, reach + radius)

@@ -36,7 +36,7 @@ class OutlineDraw:
             result=Vector(width=4), bits=bits, across=across, count=count, beyond=beyond,
         )  # fmt: skip
         return self(
-            "path_cover", mask=mask, tiles=pictures["tiles"], entries=entries, shapes=shapes, covers=covers,
+            "path_cover", mask=mask, tiles=pictures["tiles"], covers=covers,
             overlap={"mask": 0}, result=Field(), bits=bits, across=across, beyond=beyond,
             columns=-(-self.size[0] // _TILE) + 2 * beyond,
         )  # fmt: skip

@@ -11,11 +11,12 @@ from typing import NamedTuple
 
 import numpy as np
 from halation.nodes import OutlineFill
+from msgspec.structs import replace
 
 from ...errors import DeviceError
 from .outline_cells import STRIP, TILE, SegmentCells, TileGrid, sort_into_cells
 from .outline_chords import NearChords, find_candidates
-from .outline_curves import Array, PlacedCurves, flatten, list_chords
+from .outline_curves import Array, PlacedCurves, StraightSegments, flatten, list_chords
 from .outline_union import keep_edges
 
 ENTRY = 10
@@ -50,6 +51,7 @@ def build_tables(fills: Sequence[OutlineFill], size: tuple[int, int], beyond: in
 
     Raises DeviceError for so many outlines in so large a picture that memory could not hold them.
     """
+    fills = [_share_feather(fill) for fill in fills]
     across, down = (-(-side // TILE) + 2 * beyond for side in size)
     if across * down * len(fills) > MOST_TILES:
         outlines = "an outline" if len(fills) == 1 else f"{len(fills)} outlines"
@@ -63,9 +65,7 @@ def build_tables(fills: Sequence[OutlineFill], size: tuple[int, int], beyond: in
     tiles = np.zeros((down, across, 4))
     tiles[..., 2], tiles[..., 3] = scale, offset
     entries = _list_entries(prepared, is_listed, tiles)
-    shapes = [
-        (_MODES.index(fill.mode), fill.opacity, fill.invert, fill.feather, fill.growth, 0.0, 0.0, 0.0) for fill in fills
-    ]
+    shapes = [_describe_shape(fill) for fill in fills]
     tables = {
         "shapes": np.array(shapes),
         "tiles": tiles,
@@ -77,16 +77,35 @@ def build_tables(fills: Sequence[OutlineFill], size: tuple[int, int], beyond: in
     return {name: np.ascontiguousarray(table, np.float32).reshape(-1, 4) for name, table in tables.items()}
 
 
+def _share_feather(fill: OutlineFill) -> OutlineFill:
+    """The same outline; a feather that all points have is that of the outline."""
+    if len(set(fill.feathers)) != 1:
+        return fill
+    return replace(fill, feather=fill.feather + fill.feathers[0], feathers=())
+
+
+def _describe_shape(fill: OutlineFill) -> tuple[float, ...]:
+    """Two texels: the mode, the opacity, whether it is inverted, the feather; the growth, whether points have more."""
+    mode = _MODES.index(fill.mode)
+    return mode, fill.opacity, fill.invert, fill.feather, fill.growth, any(fill.feathers), 0.0, 0.0
+
+
 def _prepare(fill: OutlineFill, grid: TileGrid) -> _SortedOutline:
     curves = PlacedCurves.of(fill)
-    cells = sort_into_cells(keep_edges(flatten(curves)).ends, grid)
-    feather = fill.feather + curves.feathers.max(initial=0.0)
+    feather, narrowest = (
+        fill.feather + curves.feathers.max(initial=0.0),
+        fill.feather + curves.feathers.min(initial=0.0),
+    )
+    is_hard = feather <= 0.0 and fill.growth <= 0.0
+    chords = StraightSegments.none() if is_hard else keep_edges(list_chords(curves, feather))
+    # Of edges that are all wider than a pixel, coverage only says which side is inside.
+    is_soft = fill.growth <= 0.0 and narrowest >= 1.0
+    cells = sort_into_cells(chords.ends if is_soft else keep_edges(flatten(curves)).ends, grid)
     level = np.minimum(np.abs(cells.backdrops[::_STRIPS, :, 0]), 1.0)
-    if feather <= 0.0 and fill.growth <= 0.0:
+    if is_hard:
         nothing = np.zeros(cells.are_crossed.shape, np.intp)
         near = NearChords(np.zeros(0, np.intp), nothing, nothing)
         return _SortedOutline(fill, cells, np.zeros((0, 4)), near, cells.are_crossed, level)
-    chords = keep_edges(list_chords(curves, feather))
     near = find_candidates(chords.ends, 0.5 * feather + fill.growth + 1.0, grid)
     pairs = np.stack([chords.ends, np.pad(chords.feathers, ((0, 0), (0, 2)))], axis=1).reshape(-1, 4)
     return _SortedOutline(fill, cells, pairs, near, near.counts > 0, level)
