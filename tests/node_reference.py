@@ -92,6 +92,7 @@ BUILT_INS = (
     ("T NAME_near(vec2 p)", "the picture between pixels, bilinear; the center of the first pixel is at 0.5, 0.5"),
     ("T NAME_raw(ivec2 p)", "the pixel as it is, NaN and infinity included"),
     ("ivec2 NAME_size", "the size of picture NAME"),
+    ("bool NAME_has(ivec2 p)", "true if picture NAME has a pixel at p, in its frame or beyond"),
     ("bool inside(ivec2 p, ivec2 size)", "true if p lies in a picture of that size"),
     ("bool is_hole(T c)", "true if a channel is NaN or infinite"),
     ("VALUE_CHOICE", "the number of a choice of the value VALUE, such as `MODE_SOFT_LIGHT`"),

@@ -76,6 +76,8 @@ class Neighborhood(Struct, frozen=True):
 
     matrix: Affine
     radius: tuple[float, float]
+    shows: bool = False
+    """What is there is shown, so that a picture that reaches beyond the frame makes the result go on there."""
 
     @staticmethod
     def pixel(own: Size, read: Size, radius: tuple[float, float]) -> Neighborhood:

@@ -39,10 +39,12 @@ from .fusion.fuse import PassGroup
 from .ir import (
     Call,
     Convolve,
+    ExternalProgram,
     Gather,
+    HistoryRead,
+    HostCall,
     LoweredProgram,
     Op,
-    OpaqueProgram,
     Parameter,
     Placement,
     Raster,
@@ -72,9 +74,12 @@ def add_extents(program: LoweredProgram, passes: Sequence[PassGroup], whole: Set
         return program
     requested = {ref: Region.whole(program.shape(ref).size) for ref in program.kept_refs}
     requested |= {ref: program.data_window(ref) for name, ref in program.outputs.items() if name in whole}
+    # Nobody knows yet what the next frame will read.
+    requested |= {ref: program.data_window(ref) for ref in program.memories.values()}
     extents: dict[Ref, Region] = {}
     for ref, region in find_regions(program, passes, requested).items():
         frame = Region.whole(program.shape(ref).size)
+        region = program.data_window(ref) if program.ops[ref.op].is_memory else region
         if not frame.contains(region):
             extents[ref] = frame.union(region)
     return replace(program, extents=MappingProxyType(extents))
@@ -138,8 +143,8 @@ def _find_tables(program: LoweredProgram) -> set[int]:
 
 def _find_ending(program: LoweredProgram, whole: Set[str]) -> set[int]:
     """The operations whose pictures end at their frame: somebody must get the frame of one and nothing more."""
-    whole_refs = {ref for op in program.ops if isinstance(op, OpaqueProgram) for ref in op.reads()}
-    whole_refs |= {*program.memories.values(), *_find_last(program, whole).values()}
+    whole_refs = {ref for op in program.ops if isinstance(op, ExternalProgram) for ref in op.reads()}
+    whole_refs |= {*_find_last(program, whole).values()}
     return {ref.op for ref in whole_refs}
 
 
@@ -147,6 +152,7 @@ def _find_last(program: LoweredProgram, whole: Set[str]) -> dict[str, Ref]:
     """The outputs of operations of which nobody needs anything beyond the frame."""
     read = {ref.op for op in program.ops for ref in op.reads()}
     read |= {ref.op for name, ref in program.outputs.items() if name in whole}
+    read |= {ref.op for ref in program.memories.values()}
     return {name: ref for name, ref in program.outputs.items() if ref.op not in read}
 
 
@@ -182,6 +188,18 @@ def _(op: Read, pictures: _Pictures, most: Region) -> Region | None:
 
 
 @_find_window.register
+def _(op: HistoryRead, pictures: _Pictures, most: Region) -> Region | None:
+    return op.data_window or Region.whole(op.size)
+
+
+@_find_window.register
+def _(op: HostCall, pictures: _Pictures, most: Region) -> Region | None:
+    """All that it reads: a program on the processor gets pictures that are all as large as the largest."""
+    refs = [ref for ref in op.reads() if pictures.is_bounded(ref) and pictures.find_size(ref) == op.size]
+    return _unite([Region.whole(op.size), *map(pictures.find_window, refs)])
+
+
+@_find_window.register
 def _(op: Call, pictures: _Pictures, most: Region) -> Region | None:
     """The pixels of all that it reads, except of what has no end: noise over a picture ends where the picture does."""
     refs = [ref for ref in op.reads() if pictures.is_bounded(ref)]
@@ -204,7 +222,7 @@ def _(op: Gather, pictures: _Pictures, most: Region) -> Region | None:
     for item, ref in read.items():
         window, size = pictures.find_window(ref), pictures.find_size(ref)
         if item.around:
-            windows.append(_follow(item.around, window, size, op.size, grows=False))
+            windows.append(_follow(item.around, window, size, op.size, grows=item.around.shows))
         elif size == op.size:
             windows.append(window)
     return _unite(windows)

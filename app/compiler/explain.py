@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 
+from .areas import Region
 from .plan import Pass, Plan, Surface
 
 
@@ -29,10 +30,12 @@ def explain(plan: Plan, views: Mapping[str, str] = MappingProxyType({})) -> str:
         picture, surface = upload.picture, plan.surfaces[upload.surface]
         layer = f":{picture.layer}" if picture.layer else ""
         lines.append(f"upload    {_describe_surface(upload.surface, surface)}  {upload.node} <- {picture.path}{layer}")
+    goes_beyond = any(map(_goes_beyond, plan.surfaces))
     for index, pass_ in enumerate(plan.passes):
         written = ", ".join(_describe_surface(number, plan.surfaces[number]) for number in pass_.targets)
         read = " ".join(f"#{number}" for number in pass_.textures) or "-"
-        lines.append(f"pass {index:<4} {written}  {_describe_pass(pass_)}  reads {read}")
+        ends = "  ends at the frame" if goes_beyond and pass_.shader.foreign else ""
+        lines.append(f"pass {index:<4} {written}  {_describe_pass(pass_)}  reads {read}{ends}")
     for name, number in plan.outputs.items():
         lines.append(f"output    #{number}  {name}{views.get(name, '') and f'  view: {views[name]}'}")
     lines.append(f"frames    {describe_frames(plan)}")
@@ -90,21 +93,7 @@ def plan_as_json(plan: Plan) -> dict[str, object]:
             }
             for pass_ in plan.passes
         ],
-        "surfaces": [
-            {
-                "node": item.label,
-                "size": list(item.size),
-                "pixel_aspect": item.pixel_aspect,
-                "channels": item.channels,
-                "format": item.texel,
-                "slot": item.slot,
-                "bytes": item.nbytes,
-                "first": item.first,
-                "last": item.last,
-                "key": item.key,
-            }
-            for item in plan.surfaces
-        ],
+        "surfaces": [_surface_as_json(item) for item in plan.surfaces],
         "outputs": dict(plan.outputs),
         "peak_bytes": plan.peak_bytes,
         "tiles": None
@@ -117,6 +106,23 @@ def plan_as_json(plan: Plan) -> dict[str, object]:
                 for stage in plan.tiling.stages
             ],
         },
+    }
+
+
+def _surface_as_json(item: Surface) -> dict[str, object]:
+    return {
+        "node": item.label,
+        "size": list(item.size),
+        "frame": list(item.frame_size),
+        "start": list(item.window.start) if item.window else [0, 0],
+        "pixel_aspect": item.pixel_aspect,
+        "channels": item.channels,
+        "format": item.texel,
+        "slot": item.slot,
+        "bytes": item.nbytes,
+        "first": item.first,
+        "last": item.last,
+        "key": item.key,
     }
 
 
@@ -149,7 +155,15 @@ def _describe_pass(pass_: Pass) -> str:
 def _describe_surface(number: int, surface: Surface) -> str:
     width, height = surface.size
     shape = f" pixel aspect {surface.pixel_aspect:g}" if surface.pixel_aspect != 1.0 else ""
+    if surface.window and surface.window != Region.whole(surface.frame_size):
+        frame = "x".join(map(str, surface.frame_size))
+        shape = f" from {surface.window.x},{surface.window.y} of {frame}{shape}"
     return f"#{number} {width}x{height}{shape} {surface.texel} slot {surface.slot} ({format_bytes(surface.nbytes)})"
+
+
+def _goes_beyond(surface: Surface) -> bool:
+    """True if there are pixels beyond the frame."""
+    return surface.window is not None and not Region.whole(surface.frame_size).contains(surface.window)
 
 
 def _escape(text: str) -> str:

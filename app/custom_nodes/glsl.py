@@ -79,7 +79,9 @@ def make_glsl_class(code: Code) -> type[CustomNode]:
     _check_words(expanded)
     functions = parse("written", expanded).all_functions
     _check_entry(entry, functions)
-    reads_neighbors = bool(words(expanded) & {f"{name}_{way}" for name in inputs for way in ("at", "near", "size")})
+    reads_neighbors = bool(
+        words(expanded) & {f"{name}_{way}" for name in inputs for way in ("at", "near", "size", "has")}
+    )
     names = {function.name for function in functions}
     return _make_class(code, expanded, names, types, entry, parameters, inputs, values, outputs, reads_neighbors)
 
@@ -171,7 +173,7 @@ def _list_types(inputs: Mapping[str, Socket], values: Mapping[str, Value]) -> di
     """The types of what code can use without declaring it; those of functions by their names and brackets."""
     types = {"pixel": "ivec2", "extent": "ivec2", "frame": "int", "proxy": "float"}
     for name in inputs:
-        types |= {f"{name}_size": "ivec2", f"{name}_at()": "vec4", f"{name}_near()": "vec4"}
+        types |= {f"{name}_size": "ivec2", f"{name}_at()": "vec4", f"{name}_near()": "vec4", f"{name}_has()": "bool"}
     return types | {name: value.glsl for name, value in values.items() if value.glsl}
 
 

@@ -54,6 +54,8 @@ class Reach(Struct, frozen=True):
 
     matrix: Affine
     radius: tuple[int, int]
+    shows: bool = False
+    """The picture that is made shows this one there, and goes on beyond its frame as far as that reaches."""
 
     @staticmethod
     def block(across: int, down: int, beside: int = 0) -> Reach:
@@ -299,6 +301,7 @@ class Draw(Protocol):
     def host(self, program: HostProgram, /, result: Socket | None = None, **pictures: Pixels) -> Drawn:
         """Run a program on the processor, which reads whole pictures by name and makes one of the node's size.
 
+        Pictures that go on beyond their frame are handed over and made as a whole, all as large as the largest.
         The renderer downloads the pictures and runs it on a thread of its own. Its result is kept like all others.
         """
         ...

@@ -68,7 +68,7 @@ class Patch(NamedTuple):
 
     def place(self) -> Reach:
         """What a function that draws the picture reads of the patch."""
-        return Reach((1.0, 0.0, -float(self.origin[0]), 0.0, 1.0, -float(self.origin[1])), (0, 0))
+        return Reach((1.0, 0.0, -float(self.origin[0]), 0.0, 1.0, -float(self.origin[1])), (0, 0), shows=True)
 
 
 class PathTables(NamedTuple):
@@ -121,11 +121,15 @@ def boxes_meet(first: Box, second: Box) -> bool:
     return first[0] <= second[2] and second[0] <= first[2] and first[1] <= second[3] and second[1] <= first[3]
 
 
-def find_patch(paths: Sequence[BrushPath], size: Size) -> Patch | None:
-    """The part of a picture that paths reach, in steps, so that it often stays while strokes grow; None for none."""
-    left, top = (max(math.floor(min(path.box[axis] for path in paths) / GRID) * GRID, 0) for axis in (0, 1))
+def find_patch(paths: Sequence[BrushPath], size: Size, overscan: int) -> Patch | None:
+    """The part of a picture that paths reach, in steps, so that it often stays while strokes grow; None for none.
+
+    It may lie beyond the frame by as many pixels as the overscan has.
+    """
+    left, top = (max(math.floor(min(path.box[axis] for path in paths) / GRID) * GRID, -overscan) for axis in (0, 1))
     right, bottom = (
-        min(math.ceil(max(path.box[axis + 2] for path in paths) / GRID) * GRID + MARGIN, size[axis]) for axis in (0, 1)
+        min(math.ceil(max(path.box[axis + 2] for path in paths) / GRID) * GRID + MARGIN, size[axis] + overscan)
+        for axis in (0, 1)
     )
     return Patch((left, top), (right - left, bottom - top)) if left < right and top < bottom else None
 

@@ -132,7 +132,7 @@ class Paint(Filter):
         cover = draw.point("paint_nothing", result=Field())
         for run in _gather_runs([_trace_stroke(draw, stroke) for stroke in self._list_active(draw)]):
             paths = [trace.path for trace in run.traces]
-            patch = find_patch(paths, draw.size)
+            patch = find_patch(paths, draw.size, draw.overscan)
             if patch is None:
                 continue
             base = picture or self.image

@@ -85,7 +85,7 @@ vec4 temporal_aa_blend(float share, float gamma, float tolerance, bool deep, int
     vec4 now = sample_at(pixel);
     ivec2 front = deep ? temporal_aa_front() : pixel;
     vec2 motion = clamp(finite(velocity_at(front).xy) * proxy, -1e6, 1e6), place = vec2(pixel) + 0.5 - motion;
-    if (any(lessThan(place, vec2(0.0))) || any(greaterThan(place, vec2(extent)))) return now;
+    if (!history_has(ivec2(floor(place)))) return now;
     if (deep && !temporal_aa_known(place, tolerance)) return now;
 
     vec4 sum = vec4(0.0), squares = vec4(0.0);

@@ -222,7 +222,7 @@ vec4 paint_stroke(vec4 below, ivec2 at, int number, float cover) {
     int tool = int(facts.x);
     float amount = cover * facts.z;
     if (tool == PAINT_BRUSH) return paint_brush(below, color.rgb, int(facts.y), amount);
-    if (tool == PAINT_ERASE) return mix(below, finite(image_at(at)), amount);
+    if (tool == PAINT_ERASE) return mix(below, image_has(at) ? finite(image_at(at)) : vec4(0.0), amount);
     if (tool == PAINT_CLONE || tool == PAINT_REVEAL) {
         vec2 offset = strokes_at(ivec2(2, number)).xy, place = vec2(at) + 0.5 + offset;
         bool is_whole = offset == floor(offset);  // no other pixel has a part in it then, not even an infinite one
@@ -236,7 +236,7 @@ vec4 paint_stroke(vec4 below, ivec2 at, int number, float cover) {
 // A patch of the picture with strokes.
 vec4 paint_run(vec2 origin, int rows) {
     ivec2 at = pixel + ivec2(origin);
-    vec4 color = finite(base_at(at));
+    vec4 color = base_has(at) ? finite(base_at(at)) : vec4(0.0);
     PaintWalk walk = paint_begin(rows);
     while (walk.stroke >= 0) {
         int number = walk.stroke;
@@ -297,7 +297,8 @@ vec4 paint_smear(int count, vec2 origin, float hardness, float strength) {
 vec4 paint_place(vec2 origin) {
     ivec2 at = pixel - ivec2(origin);
     bool is_inside = all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, patch_size));
-    return is_inside ? patch_at(at) : finite(base_at(pixel));
+    if (is_inside) return patch_at(at);
+    return base_has(pixel) ? finite(base_at(pixel)) : vec4(0.0);
 }
 
 float paint_place_mask(vec2 origin) {

@@ -14,7 +14,7 @@ vec4 temporal_accumulation(vec4 mean) { return mean; }
 
 // True if a pixel of the frame before shows the surface of this one.
 bool temporal_accumulation_same(ivec2 before, float tolerance, float angle) {
-    if (!inside(before, extent)) return false;
+    if (!past_has(before)) return false;
     if (tolerance >= 0.0) {
         float near = nearness(depth_at(pixel)), past = nearness(depth_before_at(before));
         if (abs(past - near) > tolerance * max(past, near)) return false;

@@ -67,7 +67,7 @@ SPECIMENS: dict[type[Op], Op] = {
     type(op): op
     for op in (
         Read(SHAPES, "n", PICTURE, "fingerprint", half=False, data_window=Region(-1, -1, 6, 5)),
-        HistoryRead(SHAPES, "n", "key", half=False),
+        HistoryRead(SHAPES, "n", "key", half=False, data_window=Region(-1, -1, 6, 5)),
         StoredResult(SHAPES, "n", (PICTURE,), (False,), ("key",)),
         Call(SHAPES, "n", "color/exposure", "exposure", PARAMETERS, CHOICES),
         ColorCall(SHAPES, "n", "color", "color_change", PARAMETERS, CHOICES, program=PROGRAM),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Set
+
 from halation.nodes import Edge, glsl_type
 
 from ..ir import BLOCK, MAX_WEIGHTS, Accessor, Convolve, Reduce, Ref
@@ -24,22 +26,23 @@ SMALL_PIXELS = 2**18
 invocation of others. Compiling more takes longer than it saves on them. Chosen by judgement."""
 
 
-def write_accessor(names: ShaderNames, item: Accessor, edge: Edge) -> list[str]:
-    """`<name>_size`, `<name>_raw`, `<name>_at` and `<name>_near` for one picture.
+def write_accessor(names: ShaderNames, item: Accessor, edge: Edge, used_words: Set[str] = frozenset()) -> list[str]:
+    """`<name>_size`, `<name>_raw`, `<name>_at` and `<name>_near` for one picture; `<name>_has` if that word is used.
 
     Places are limited to 2^24, up to which floats count single pixels: GLSL leaves open what a larger float is as an
     int.
     """
-    name, glsl = item.name, item.glsl
+    name, glsl, has = item.name, item.glsl, "true"
     if isinstance(item.operand, Ref):
         size = names.program.shape(item.operand).size
         names.uniform("ivec2", size, f"{name}_size")
-        extent = names.program.extents.get(item.operand)
+        extent, has = names.program.extents.get(item.operand), f"inside(p, {name}_size)"
         if extent and edge in ("clamp", "black"):
             first = names.uniform("ivec2", extent.start, f"{name}_first")
             room = names.uniform("ivec2", extent.size, f"{name}_room")
             value = names.load_as(item.operand, f"edge_clamp(p - {first}, {room}) + {first}", glsl)
-            value = f"inside(p - {first}, {room}) ? {value} : {glsl}(0.0)" if edge == "black" else value
+            has = f"inside(p - {first}, {room})"
+            value = f"{has} ? {value} : {glsl}(0.0)" if edge == "black" else value
         elif edge == "black":
             value = names.load_as(item.operand, f"edge_clamp(p, {name}_size)", glsl)
             value = f"inside(p, {name}_size) ? {value} : {glsl}(0.0)"
@@ -49,6 +52,7 @@ def write_accessor(names: ShaderNames, item: Accessor, edge: Edge) -> list[str]:
         names.uniform("ivec2", (1, 1), f"{name}_size")
         value = names.constant(item.operand, glsl)
     return [
+        *([f"bool {name}_has(ivec2 p) {{ return {has}; }}"] if f"{name}_has" in used_words else []),
         f"{glsl} {name}_raw(ivec2 p) {{ return {value}; }}",
         f"{glsl} {name}_at(ivec2 p) {{ {glsl} c = {name}_raw(p); return is_hole(c) ? {glsl}(0.0) : c; }}",
         f"{glsl} {name}_near(vec2 p) {{",

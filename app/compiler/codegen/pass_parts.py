@@ -15,7 +15,7 @@ from ..library import Library
 from . import bodies
 from .names import ShaderNames, convert, glsl_channels
 
-ACCESSORS = ("raw", "at", "near", "size")
+ACCESSORS = ("raw", "at", "near", "size", "has")
 """The endings of the functions that read a picture anywhere: `image_at` and so on."""
 
 NO_SEAM = (0, 0, 0, 0)
@@ -99,7 +99,7 @@ def _(root: Call, context: PassContext) -> PassParts:
         line
         for gather in inlined
         for item in gather.accessors
-        for line in bodies.write_accessor(context.names, item, gather.op.edge)
+        for line in bodies.write_accessor(context.names, item, gather.op.edge, gather.text.words)
     ]
     body, values = _write_calls(context)
     shaders = [*([EDGES] if inlined else []), *_pointwise_files(context)]
@@ -131,7 +131,8 @@ def _(root: Convolve, context: PassContext) -> PassParts:
 @write_pass_parts.register
 def _(root: Gather, context: PassContext) -> PassParts:
     names = context.names
-    functions = [line for item in root.accessors for line in bodies.write_accessor(names, item, root.edge)]
+    words = context.library.find_words(root.shader, root.function, root.owner)
+    functions = [line for item in root.accessors for line in bodies.write_accessor(names, item, root.edge, words)]
     arguments = [names.argument(item, {}) for item in root.parameters]
     accessors = frozenset(f"{item.name}_{suffix}" for item in root.accessors for suffix in ACCESSORS)
     body, results = list[str](), [f"r{ref.output}" for ref in context.group.writes]

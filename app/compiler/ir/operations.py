@@ -65,11 +65,14 @@ class HistoryRead(SourceOp, frozen=True):
 
     memory_key: str
     half: bool
+    data_window: Region | None = None
+    """The pixels that were remembered, where they are more than the frame."""
 
     is_memory: ClassVar[bool] = True
     identity_exclude: ClassVar[Mapping[str, str]] = {
         "shapes": "the key of the remembered pixels says it",
         "half": "the key of the remembered pixels says it",
+        "data_window": "the key of the remembered pixels says it",
     }
 
     def key(self, output: int) -> object:

@@ -9,7 +9,7 @@ from halation.nodes import Size
 from msgspec import Struct
 from msgspec.structs import force_setattr
 
-from ..areas import Neighborhood
+from ..areas import Neighborhood, Region
 
 
 class PictureShape(Struct, frozen=True, gc=False):
@@ -30,6 +30,8 @@ class Memory(Struct, frozen=True):
     key: str
     shape: PictureShape
     half: bool
+    data_window: Region | None = None
+    """The pixels that it has, where they are more than its frame."""
 
 
 class Ref(Struct, frozen=True):

@@ -301,9 +301,7 @@ class Recorder(OutlineDraw):
         # A memory of another size belongs to another picture, from before the node or the proxy changed.
         if memory is None or memory.shape != picture.shape:
             return picture
-        return DrawnPicture(
-            self._builder.add(HistoryRead((picture.shape,), self._owner, memory.key, memory.half)), picture.shape
-        )
+        return self._add_op(HistoryRead((picture.shape,), self._owner, memory.key, memory.half, memory.data_window))
 
     def remember(self, pixels: Drawn, name: str = "") -> None:
         assert isinstance(pixels, DrawnPicture)
@@ -357,7 +355,7 @@ class Recorder(OutlineDraw):
         if overlap is None or isinstance(operand, UniformConstant):
             return None
         if isinstance(overlap, Reach):
-            return Neighborhood(overlap.matrix, overlap.radius)
+            return Neighborhood(overlap.matrix, overlap.radius, overlap.shows)
         radius = overlap if isinstance(overlap, tuple) else (overlap, overlap)
         return Neighborhood.pixel(own, self._builder.shape(operand).size, radius)
 

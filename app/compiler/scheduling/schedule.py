@@ -133,7 +133,7 @@ def _find_memories(
 ) -> Mapping[Port, Memory]:
     return MappingProxyType(
         {
-            node: Memory(keys[ref], program.shape(ref), texels[ref].endswith("16f"))
+            node: Memory(keys[ref], program.shape(ref), texels[ref].endswith("16f"), program.extents.get(ref))
             for node, ref in program.memories.items()
         }
     )

@@ -23,6 +23,7 @@ from .array_pool import ArrayPool
 from .costs import PassCosts
 from .decoding import Array, DecodedPicture
 from .host_jobs import HostJob, HostJobs
+from .host_windows import cut_window, find_host_window, find_window
 from .program_cache import ProgramCache
 from .progress_beacon import ProgressBeacon
 from .resource_cache import ResourceCache
@@ -161,7 +162,11 @@ class Executor:
         if job := self._host_jobs.find(key):
             return job
         numbers = {name: render_pass.textures[place] for name, place in render_pass.host.pictures}
-        pictures = {name: self.download(plan, number, ArrayPool()) for name, number in numbers.items()}
+        whole = find_host_window(plan, render_pass)
+        pictures = {
+            name: cut_window(self.download(plan, number, ArrayPool()), find_window(plan.surfaces[number]), whole)
+            for name, number in numbers.items()
+        }
         return self._host_jobs.start(key, render_pass.host.program, pictures)
 
     def abandon_host_job(self, plan: Plan, render_pass: Pass) -> None:
@@ -178,6 +183,7 @@ class Executor:
         started = time.perf_counter()
         try:
             pixels = self._host_jobs.finish(surface.key)
+            pixels = cut_window(pixels, find_host_window(plan, render_pass), find_window(surface))
         except HalationError as error:
             error.node = error.node or render_pass.nodes[-1]
             raise type(error)(f"{describe_owner(error.node)}: {error}", node=error.node) from error
