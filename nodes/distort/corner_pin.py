@@ -11,7 +11,7 @@ class CornerPin(Filter):
 
     aliases = (
         "corner pin", "cornerpin", "corner positioner", "four point", "perspective", "power pin", "screen replacement",
-        "quad warp", "homography", "plane track", "distort corners", "keystone", "unpin", "card",
+        "quad warp", "homography", "plane track", "distort corners", "keystone", "unpin", "card", "cornerpin2d",
     )  # fmt: skip
     traits = (Trait.WARPS,)
 

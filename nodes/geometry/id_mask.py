@@ -19,7 +19,7 @@ class IdMask(Filter):
 
     aliases = (
         "id matte", "object id", "material id", "object mask", "index matte", "object index", "material index",
-        "multimatte", "puzzle matte", "matte from id",
+        "multimatte", "puzzle matte", "matte from id", "index mask",
     )  # fmt: skip
 
     proxy_notes = (ProxyNote(("colors",), "it has hard edges between strong colors, as wide as a pixel of the proxy"),)

@@ -108,9 +108,6 @@ class KernelGlare(Filter):
     out = OutputSocket()
     glow = OutputSocket()
 
-    def output_size(self, inputs: Mapping[str, Size], canvas: Size) -> Size:
-        return inputs.get("image", canvas)
-
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         factor, lines = _FACTORS[self.quality]
         while factor > 1 and draw.size[1] < factor * lines:

@@ -31,7 +31,7 @@ class Keyer(Filter):
     aliases = (
         "keyer", "keying", "keylight", "primatte", "ultimatte", "ibk", "ibk gizmo", "delta keyer", "chroma keyer",
         "ultra keyer", "color difference key", "green screen", "blue screen", "greenscreen", "bluescreen", "key",
-        "remove background", "image based keyer", "pull key", "pik",
+        "remove background", "image based keyer", "pull key", "pik", "colour difference key",
     )  # fmt: skip
     traits = (Trait.NEEDS_COLOR, Trait.USES_ALPHA)
 
