@@ -7,7 +7,9 @@
 float halftone_disc(float radius) {
     float square = radius * radius, disc = PI * square;
     if (radius <= 0.5) return disc;
-    return disc - 4.0 * (square * acos(0.5 / radius) - 0.5 * sqrt(square - 0.25));
+    // An arc tangent instead of acos(0.5 / radius), which drivers approximate: off by 4e-4, black had holes.
+    float chord = sqrt(square - 0.25);
+    return disc - 4.0 * (square * atan(2.0 * chord, 1.0) - 0.5 * chord);
 }
 
 // The tone at which ink reaches this place of a cell. All values are equally frequent, so ink where it is below a tone

@@ -66,6 +66,17 @@ def test_white_and_black_are_whole(run, hdr):
         np.testing.assert_allclose(run(Halftone(), {"image": flat})[..., :3], expected)
 
 
+@pytest.mark.parametrize("light", [3e-4, 3e-5])
+def test_nearly_black_is_open_at_the_corners_of_cells_only(run, light):
+    """There the disc of ink just covers the cell, so what is a little less than black has holes of one sample."""
+    flat = np.full((15, 20, 4), light, np.float32)
+    flat[..., 3] = 1.0
+    found = run(Halftone(inks="black", size=2.5, angle=-45.0), {"image": flat})[..., 0]
+    y, x, down, right = np.ix_(*map(np.arange, (15, 20, 3, 3)))
+    corner = ((6 * x + 2 * right + 1) % 15 == 0) & ((6 * y + 2 * down + 1) % 15 == 0)
+    np.testing.assert_allclose(found, corner.sum((2, 3)) / 9.0, atol=1e-6)
+
+
 def test_alpha_is_kept(run, hdr):
     picture = hdr(13, 9)
     found = run(Halftone(), {"image": picture})
