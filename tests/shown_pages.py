@@ -24,14 +24,18 @@ SHARES = (0.3, 0.85)
 
 
 def read_picture(path: Path) -> np.ndarray:
-    """Codes from 0 to 255 over black: [height, width, 3]."""
+    """Codes from 0 to 255 over black, whole as a screen shows them: [height, width, 3].
+
+    A canvas keeps premultiplied codes and a PNG of ours straight ones: half-transparent pixels are rounded at other
+    places on the way, by less than a code.
+    """
     straight = oiio.ImageSpec()
     straight["oiio:UnassociatedAlpha"] = 1
     read = oiio.ImageBuf(str(path), 0, 0, straight).get_pixels(oiio.FLOAT)
     assert read is not None
     pixels = 255.0 * read
     if pixels.shape[2] == 4:
-        pixels = pixels[..., :3] * pixels[..., 3:] / 255.0
+        pixels = np.rint(pixels[..., :3] * pixels[..., 3:] / 255.0)
     return np.broadcast_to(pixels, (*pixels.shape[:2], 3))
 
 

@@ -33,6 +33,9 @@ FIRST_PAGE_LIMIT = 1_000_000
 SCREENS = {"phone": (390, 844), "laptop": (1366, 768), "desktop": (1920, 1080)}
 """Pixels of CSS: an iPhone 14, and the two sizes of screens that most visitors of the web have besides."""
 
+SCHEMES = {"light": "default", "dark": "slate"}
+"""What visitors like better, and what Material calls the colors of that."""
+
 RULES = ("wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice")
 """The sets of rules of axe-core."""
 
@@ -153,13 +156,17 @@ def find_faults_on_screen(
     """What is wrong with pages as a browser shows them, on each screen in each scheme."""
     engine = distribution("axe-playwright-python").locate_file("axe_playwright_python/axe.min.js")
     script = Path(str(engine)).read_text(encoding="utf-8")
-    for scheme in ("light", "dark"):
+    for scheme, colors in SCHEMES.items():
         browser.prefer_scheme(scheme)
+        browser.open(f"{address}/index.html")
+        browser.run("localStorage.clear(); true")  # Material keeps the colors of the first page that was opened
         for screen, (width, height) in SCREENS.items():
             browser.show_at(width, height, is_phone=screen == "phone")
             for name in names:
                 browser.open(f"{address}/{name}")
                 browser.run("document.fonts.ready.then(() => true)")
+                if (shown := browser.run("document.body.dataset.mdColorScheme")) != colors:
+                    yield Fault(name, f"{screen}, {scheme}", "colors", f"the page is shown in {shown}, not in {colors}")
                 if shots:
                     browser.take_picture(
                         shots / f"{name.removesuffix('.html').replace('/', '_')}_{screen}_{scheme}.png"

@@ -59,7 +59,8 @@ class Coach:
                 self._go_on(progress.lesson)
             return
         rect = progress.widgets.get(step.widget)
-        if rect is not None and (frame := fit_frame(rect, progress.widgets, _OUT * ui_scale())):
+        is_covered = self._context.dialogs.any
+        if rect is not None and not is_covered and (frame := fit_frame(rect, progress.widgets, _OUT * ui_scale())):
             self._draw_frame(frame)
         self._draw_card(progress.lesson, step, rect)
 
@@ -170,12 +171,11 @@ class Coach:
 
 
 def fit_frame(rect: Rect, widgets: Mapping[str, Rect], out: float) -> Rect | None:
-    """The frame around a widget, `out` pixels away and inside of its dialog or panel; None if it is scrolled away."""
+    """The frame around a widget, `out` pixels away and inside of its panel; None if it is scrolled away."""
     x, y = (rect[0] + rect[2]) / 2, (rect[1] + rect[3]) / 2
-    dialogs = [place for name, place in widgets.items() if name.startswith("dialog ")]
     panels = [widgets[title] for title in PanelTitle if title in widgets]
     frame = rect[0] - out, rect[1] - out, rect[2] + out, rect[3] + out
-    holders = [place for place in (*dialogs, *panels) if place[0] <= x <= place[2] and place[1] <= y <= place[3]]
+    holders = [place for place in panels if place[0] <= x <= place[2] and place[1] <= y <= place[3]]
     if not holders:
         return None if any(_overlaps(rect, panel) for panel in panels) else frame
     left, top, right, bottom = holders[0]
