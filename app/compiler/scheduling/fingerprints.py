@@ -15,6 +15,7 @@ that would make it alone: a change of one leaves the keys of the others, and the
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence, Set
+from types import MappingProxyType
 
 from ..fusion.fuse import PassGroup
 from ..fusion.rewrites import split_by_result
@@ -29,17 +30,32 @@ Fingerprint = tuple[PassGroup, str]
 
 
 class PassFingerprints:
-    """Finds the fingerprints of passes. Equal ones mean equal shaders, set to equal values."""
+    """Finds the fingerprints of passes. Equal ones mean equal shaders, set to equal values.
 
-    def __init__(self, program: LoweredProgram, library: Library, target: Target, formats: Mapping[Ref, str]) -> None:
+    `known` are descriptions of operations that are the same as before, in a plan for the same frame.
+    """
+
+    def __init__(
+        self,
+        program: LoweredProgram,
+        library: Library,
+        target: Target,
+        formats: Mapping[Ref, str],
+        known: Mapping[int, str] = MappingProxyType({}),
+    ) -> None:
         self._program, self._library, self._formats = program, library, formats
         self._target = target
         self._uniforms = {"proxy": program.scale, "frame": program.frame}
-        self._descriptions: dict[int, str] = {}
+        self.descriptions = dict(known)
+        """All that decides what an operation makes, but the pictures that it reads, by its number."""
 
     def of(self, group: PassGroup) -> tuple[Fingerprint, ...]:
         """The fingerprint of each result of a pass, as if the pass made nothing else."""
         return tuple((part, self._fingerprint(part)) for part in split_by_result(self._program, group))
+
+    def renew(self, before: tuple[Fingerprint, ...]) -> tuple[Fingerprint, ...]:
+        """The fingerprints of a pass in which only numbers are others than `before`."""
+        return tuple((part, self._fingerprint(part)) for part, _ in before)
 
     def _fingerprint(self, group: PassGroup) -> str:
         """Pictures are told apart by their place: first those that the pass reads, then what it makes, in order."""
@@ -66,11 +82,11 @@ class PassFingerprints:
 
     def _describe(self, index: int, op: Op) -> str:
         """An operation, the texts that it calls, and the uniforms of the whole pass that it reads."""
-        if index not in self._descriptions:
+        if index not in self.descriptions:
             files = self._library.digest(op.files, op.owner) if op.files else ""
             uniforms = [self._uniforms[name] for name in sorted(op.find_uniforms(self._library))]
-            self._descriptions[index] = repr((op.identity, files, uniforms))
-        return self._descriptions[index]
+            self.descriptions[index] = repr((op.identity, files, uniforms))
+        return self.descriptions[index]
 
 
 def find_keys(

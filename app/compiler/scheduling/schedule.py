@@ -31,6 +31,8 @@ class ScheduleRecord(Struct, frozen=True):
     texels: Mapping[Ref, str]
     """Formats, in the order of the surfaces."""
     fingerprints: tuple[tuple[Fingerprint, ...], ...]
+    descriptions: Mapping[int, str]
+    """What the fingerprints say of operations, by their numbers: see `PassFingerprints`."""
     keys: Mapping[Ref, str]
     plan: Plan
 
@@ -50,7 +52,8 @@ def schedule(
     texels = choose_formats(program, passes, target, precision, halves)
     needed = dict.fromkeys(texels)
     emitted = [emit(program, fused, library, target, texels) for fused in passes]
-    fingerprints = tuple(map(PassFingerprints(program, library, target, texels).of, passes))
+    described = PassFingerprints(program, library, target, texels)
+    fingerprints = tuple(map(described.of, passes))
     keys = find_keys(program, fingerprints, needed)
     first, last = _find_lifetimes(program, passes)
     slots, sizes = _assign_slots(program, needed, texels, first, last)
@@ -84,7 +87,7 @@ def schedule(
         _find_memories(program, keys, texels),
         sizes,
     )
-    return ScheduleRecord(program, passes, texels, fingerprints, keys, plan)
+    return ScheduleRecord(program, passes, texels, fingerprints, described.descriptions, keys, plan)
 
 
 def reschedule(before: ScheduleRecord, program: LoweredProgram, library: Library) -> ScheduleRecord | None:
@@ -99,7 +102,10 @@ def reschedule(before: ScheduleRecord, program: LoweredProgram, library: Library
     plan, target = before.plan, before.plan.target
     numbers = {ref: number for number, ref in enumerate(before.texels)}
     frame_changed = program.frame != before.program.frame
-    find_fingerprints = PassFingerprints(program, library, target, before.texels).of
+    known = (
+        {} if frame_changed else {index: text for index, text in before.descriptions.items() if index not in changed}
+    )
+    described = PassFingerprints(program, library, target, before.texels, known)
     passes, fingerprints = [*plan.passes], [*before.fingerprints]
     surfaces, keys = [*plan.surfaces], dict(before.keys)
     changed_passes = [
@@ -112,7 +118,7 @@ def reschedule(before: ScheduleRecord, program: LoweredProgram, library: Library
         fused = before.passes[number]
         item = emit(program, fused, library, target, before.texels)
         passes[number] = _make_pass(program, fused, item, numbers, library)
-        fingerprints[number] = find_fingerprints(fused)
+        fingerprints[number] = described.renew(fingerprints[number])
     sources = [ref for ref in numbers if ref.op in changed]
     for ref in update_keys(keys, program, sources, fingerprints, changed_passes):
         if ref in numbers:
@@ -125,7 +131,9 @@ def reschedule(before: ScheduleRecord, program: LoweredProgram, library: Library
         cameras=program.cameras,
         memories=_find_memories(program, keys, before.texels),
     )
-    return ScheduleRecord(program, before.passes, before.texels, tuple(fingerprints), keys, plan)
+    return ScheduleRecord(
+        program, before.passes, before.texels, tuple(fingerprints), described.descriptions, keys, plan
+    )
 
 
 def _find_memories(
