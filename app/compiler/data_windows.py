@@ -219,6 +219,15 @@ def _(op: Gather, pictures: _Pictures, most: Region) -> Region | None:
     if op.warps:
         return most
     windows = [Region.whole(op.size)]
+    if op.ends_as is not None and op.ends_as[0].op not in pictures.boundless:
+        ((_, ref),) = read.items()
+        other, axis = pictures.find_window(op.ends_as[0]), op.ends_as[1]
+        spans = (
+            (other.across, pictures.find_window(ref).down)
+            if axis == 0
+            else (pictures.find_window(ref).across, other.down)
+        )
+        return _unite([*windows, Region.of(*spans)])
     for item, ref in read.items():
         window, size = pictures.find_window(ref), pictures.find_size(ref)
         if item.around:
@@ -240,7 +249,10 @@ def _(op: Placement, pictures: _Pictures, most: Region) -> Region | None:
 
 @_find_window.register
 def _(op: Convolve, pictures: _Pictures, most: Region) -> Region | None:
-    """Along its axis the pixels of which a tap, or without black outside the middle one, lies in what it reads."""
+    """Along its axis the pixels of which a tap, or without black outside the middle one, lies in what it reads.
+
+    A smaller picture has all of them: those around it are what the edge mode makes, and the same all the way outward.
+    """
     if op.image.op in pictures.boundless:
         return None
     read, taps = pictures.find_window(op.image), len(op.weights)
@@ -248,7 +260,9 @@ def _(op: Convolve, pictures: _Pictures, most: Region) -> Region | None:
         return Region.whole(op.size)
     spans = [read.across, read.down]
     first, end = spans[op.axis]
-    low, high = (op.origin, op.origin + taps - 1) if op.edge == "black" else (op.origin + taps // 2,) * 2
+    low, high = (
+        (op.origin, op.origin + taps - 1) if op.edge == "black" or op.stride > 1 else (op.origin + taps // 2,) * 2
+    )
     spans[op.axis] = (math.ceil((first - high) / op.stride), math.floor((end - 1 - low) / op.stride) + 1)
     return Region.of(*spans)
 

@@ -99,6 +99,18 @@ def test_a_blur_beyond_the_frame_is_scipys(run) -> None:
     np.testing.assert_allclose(run(graph, {"picture": picture}), expected, atol=3e-5)
 
 
+@pytest.mark.parametrize("sigma", [3.0, 9.0, 24.0])
+def test_a_large_blur_keeps_all_pixels_beyond_the_frame(renderer, tmp_path: Path, sigma: float) -> None:
+    """It is made on a smaller picture, which has pixels around its own that the edge mode makes up."""
+    pixels = make_picture(5, (WIDTH + 40, HEIGHT + 40))
+    file = write_overscan(tmp_path / "plate.exr", (20, 20), pixels)
+    graph = chain(NODES["gaussian_blur"](sigma=sigma, edge="clamp"), overscan=0.5, file=file)
+    made = renderer.render(graph, RenderRequest(precision="float", whole=frozenset({"out"})))["out"]
+    expected = gaussian_filter(pixels.astype(np.float64), (sigma, sigma, 0), mode="nearest", truncate=8)
+    assert made.shape == pixels.shape
+    np.testing.assert_allclose(made, expected, atol=2e-3)
+
+
 @pytest.mark.parametrize("seed", list_seeds(4, 24))
 def test_random_moves_and_their_inverse(run, seed: int) -> None:
     rng, picture = np.random.default_rng(seed), make_picture(seed)

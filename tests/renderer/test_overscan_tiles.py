@@ -29,6 +29,7 @@ CHAINS = {
     "moves": (move(40.0, 30.0), NODES["exposure"](stops=1.0), move(-40.0, -30.0)),
     "turns": (move(0.0, 0.0, rotation=30.0), NODES["invert"](), move(9.0, 0.0, rotation=-30.0)),
     "a blur": (move(40.0, 30.0), NODES["gaussian_blur"](sigma=3.0, edge="black"), move(-40.0, -30.0)),
+    "a clamped blur": (move(-20.0, 9.0), NODES["gaussian_blur"](sigma=12.0), move(20.0, 9.0)),
     "a decimated blur": (move(-20.0, 9.0), NODES["gaussian_blur"](sigma=12.0, edge="black"), move(20.0, 9.0)),
 }
 

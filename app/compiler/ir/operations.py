@@ -208,10 +208,13 @@ class Gather(FunctionOp, frozen=True, kw_only=True):
     """Shows pixels of its picture at other places, which are known for the frame alone."""
     stretches: bool = False
     """Shows all of its picture in another number of pixels."""
+    ends_as: tuple[Ref, int] | None = None
+    """A picture, and the axis along which this one ends where that does: what is read has pixels that an edge made."""
 
     identity_exclude: ClassVar[Mapping[str, str]] = {
         "light": "it decides in which pass pixels are made, not which",
         "warps": "it decides where a picture ends, which the key of its pass says",
+        "ends_as": "it decides where a picture ends, which the key of its pass says",
         "stretches": "it decides the shape in which pixels are shown, not what is in them",
     }
 

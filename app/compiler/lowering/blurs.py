@@ -55,7 +55,8 @@ class BlurBuilder:
         for axis, plan in reversed(list(enumerate(axes))):
             if plan.factor > 1:
                 apron = -firsts[axis] * plan.factor
-                picture = self._enlarge(picture, axis, plan.factor, apron, full[axis], spans[axis][1])
+                ends_as = None if edge == "black" else (image, axis)
+                picture = self._enlarge(picture, axis, plan.factor, apron, full[axis], spans[axis][1], ends_as)
         return picture
 
     def convolve(
@@ -65,7 +66,16 @@ class BlurBuilder:
         shape = self._resize(image, axis, length)
         return self._builder.add(Convolve((shape,), self._owner, image, axis, weights, stride, origin, edge))
 
-    def _enlarge(self, image: Ref, axis: int, factor: int, apron: int, length: int, edge: Edge) -> Ref:
+    def _enlarge(
+        self,
+        image: Ref,
+        axis: int,
+        factor: int,
+        apron: int,
+        length: int,
+        edge: Edge,
+        ends_as: tuple[Ref, int] | None,
+    ) -> Ref:
         shape = self._resize(image, axis, length)
         scale, start = 1.0 / factor, apron / factor
         matrix = (scale, 0.0, start, 0.0, 1.0, 0.0) if axis == 0 else (1.0, 0.0, 0.0, 0.0, scale, start)
@@ -74,7 +84,9 @@ class BlurBuilder:
         numbers = tuple(Parameter("int", UniformConstant(number)) for number in (axis, factor, apron))
         light = self._library.is_light(*ENLARGE, self._owner)
         return self._builder.add(
-            Gather((shape,), self._owner, *ENLARGE, numbers, accessors=(accessor,), edge=edge, light=light)
+            Gather(
+                (shape,), self._owner, *ENLARGE, numbers, accessors=(accessor,), edge=edge, light=light, ends_as=ends_as
+            )
         )
 
     def _resize(self, image: Ref, axis: int, length: int) -> PictureShape:
