@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 
 from halation.nodes import Size
@@ -50,14 +50,13 @@ def schedule(
     `halves` are outputs that will be rounded to half floats.
     """
     texels = choose_formats(program, passes, target, precision, halves)
-    needed = dict.fromkeys(texels)
     emitted = [emit(program, fused, library, target, texels) for fused in passes]
     described = PassFingerprints(program, library, target, texels)
     fingerprints = tuple(map(described.of, passes))
-    keys = find_keys(program, fingerprints, needed)
+    keys = find_keys(program, fingerprints, texels)
     first, last = _find_lifetimes(program, passes)
-    slots, sizes = _assign_slots(program, needed, texels, first, last)
-    numbers = {ref: number for number, ref in enumerate(needed)}
+    slots, sizes = _assign_slots(program, texels, texels, first, last)
+    numbers = {ref: number for number, ref in enumerate(texels)}
     pixel_aspects = find_pixel_aspects(program.ops)
 
     def make_surface(ref: Ref) -> Surface:
@@ -78,7 +77,7 @@ def schedule(
 
     plan = Plan(
         target,
-        tuple(map(make_surface, needed)),
+        tuple(map(make_surface, texels)),
         tuple(_find_uploads(program, numbers)),
         tuple(_make_pass(program, fused, item, numbers, library) for fused, item in zip(passes, emitted, strict=True)),
         MappingProxyType({name: numbers[ref] for name, ref in program.outputs.items()}),
@@ -229,7 +228,7 @@ def _find_lifetimes(program: LoweredProgram, passes: Sequence[PassGroup]) -> tup
 
 def _assign_slots(
     program: LoweredProgram,
-    needed: Mapping[Ref, None],
+    needed: Iterable[Ref],
     texels: Mapping[Ref, str],
     first: Mapping[Ref, int],
     last: Mapping[Ref, int],
