@@ -124,9 +124,10 @@ A node is a class and a GLSL file. The class body declares sockets and values; i
 declares no output has one Image, `out`.
 
 A node whose first output is its input `image`, changed, at the same size, gets an input `mask` and the values `mix` and
-`invert_mask` by itself. They are no parameters of its GLSL: Halation applies them after the node. The three belong
-together: a node that declares one of these names itself gets none of them, because only the node knows what a mask of
-its own does, and `halation nodes --check` says so. Choose another name, such as `matte`, to keep the mask of Halation.
+`invert_mask` by itself. They are no parameters of its GLSL: Halation applies them after the node. A node that declares
+`mask` or `invert_mask` itself gets only `mix`, because only the node knows what a mask of its own does; one that
+declares `mix` gets none of the three. `halation nodes --check` says so. Choose another name, such as `matte`, to keep
+the mask of Halation.
 """
 DRAWS = """\
 ## Drawing

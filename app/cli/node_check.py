@@ -49,7 +49,8 @@ def _print_summary(classes: Mapping[str, type[Node]], faulty_count: int, refused
     for id, node in classes.items():
         if node.own_mask_names:
             names = " and ".join(f"'{name}'" for name in node.own_mask_names)
-            print_note(f"{id}: it declares {names} itself, so that Halation adds no mask, mix and invert_mask")
+            added = "only mix" if node.has_mix else "no mask, mix and invert_mask"
+            print_note(f"{id}: it declares {names} itself, so that Halation adds {added}")
     parts = [f"{write_count(refused_count, 'plug-in')} cannot be loaded"] if refused_count else []
     if classes or not refused_count:
         parts.append(f"{write_count(len(classes), 'node')}: {faulty_count - refused_count or 'nothing'} to mend")

@@ -27,7 +27,7 @@ def make_mask() -> Field:
 
 
 def list_mask_values() -> dict[str, tuple[Any, float | bool]]:
-    """The annotations and defaults of the values that belong to the mask, by name."""
+    """The annotations and defaults of the values with which a change is mixed with the picture, by name."""
     mix = Slider(0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="How much of the change is seen; 0 is none.")
     invert = Doc("Change the picture where the mask is 0 instead.")
     return {MIX: (Annotated[float, mix, Folded()], 1.0), INVERT_MASK: (Annotated[bool, invert, Folded()], False)}
@@ -36,8 +36,8 @@ def list_mask_values() -> dict[str, tuple[Any, float | bool]]:
 def list_own_names(cls: type, inputs: Mapping[str, Socket], outputs: Mapping[str, OutputSocket]) -> tuple[str, ...]:
     """Those names of the mask that a class declares itself, as sockets or values.
 
-    The three belong together: `mix` and `invert_mask` are about the input `mask`, and nobody but the node knows what a
-    mask of its own does. So one of them keeps all three from being added.
+    `mask` and `invert_mask` belong together, and nobody but the node knows what a mask of its own does. So one of these
+    names keeps both from being added. `mix` is added unless the class declares it.
     """
     names = {*inputs, *outputs, *getattr(cls, "__annotations__", ())}
     return tuple(name for name in (MASK, *list_mask_values()) if name in names)

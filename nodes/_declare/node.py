@@ -15,7 +15,7 @@ from .camera import CameraModel
 from .checks import check_aliases, check_names
 from .draw import Affine, Draw, Drawn
 from .lengths import WORKING_UNITS, LengthUnits, declare_in_unit, is_length, resolve_length_unit, unit_factor
-from .masking import MASK, is_maskable, list_mask_values, list_own_names, make_mask
+from .masking import INVERT_MASK, MASK, MIX, is_maskable, list_mask_values, list_own_names, make_mask
 from .sockets import Image, OutputSocket, Size, Socket
 from .traits import ProxyNote, Trait
 from .values import Doc, Missing, Value, read_value
@@ -80,11 +80,13 @@ class Node:
     """Names of inputs and values in declared order: the parameters of a pointwise GLSL function."""
     aliases: ClassVar[tuple[str, ...]] = ()
     """Names that other programs give such a node, in lower case: the search finds it by them."""
+    has_mix: ClassVar[bool] = False
+    """True if it has the value `mix`, as all have that change `image` at its size: the first output is mixed with
+    `image`, after the node."""
     has_mask: ClassVar[bool] = False
-    """True if it has the input `mask` and the values `mix` and `invert_mask`, as all have that change `image` at its
-    size. The mask is applied to the first output, after the node."""
+    """True if it also has the input `mask` and the value `invert_mask`, which say where it is mixed."""
     own_mask_names: ClassVar[tuple[str, ...]] = ()
-    """Which of `mask`, `mix` and `invert_mask` the class body declares, so that none of them is added."""
+    """Which of `mask`, `mix` and `invert_mask` the class body declares, and with them what they mean."""
     traits: ClassVar[tuple[Trait, ...]] = ()
     """What rules and tests need to know besides sockets and values."""
     proxy_notes: ClassVar[tuple[ProxyNote, ...]] = ()
@@ -117,9 +119,10 @@ class Node:
         check_aliases(cls.aliases)
         may_have_mask = is_maskable(cls, cls.inputs, outputs, Node)
         cls.own_mask_names = list_own_names(cls, cls.inputs, outputs) if may_have_mask else ()
-        cls.has_mask = may_have_mask and not cls.own_mask_names
-        if cls.has_mask:
-            cls._add_mask()
+        cls.has_mix = may_have_mask and MIX not in cls.own_mask_names
+        cls.has_mask = cls.has_mix and not cls.own_mask_names
+        if cls.has_mix:
+            cls._add_mix()
         dataclasses.dataclass(frozen=True, kw_only=True)(cls)
         if not outputs:
             implied = OutputSocket()
@@ -140,10 +143,13 @@ class Node:
         cls.order = tuple(name for name in own_names if name in cls.inputs or name in cls.values)
 
     @classmethod
-    def _add_mask(cls) -> None:
-        """Declare the input and the values of a mask, as if the class body had them."""
-        cls.inputs = {**cls.inputs, MASK: make_mask()}
+    def _add_mix(cls) -> None:
+        """Declare the values of a mix, and the input of a mask unless it has its own, as if the class body had them."""
         additions = list_mask_values()
+        if cls.has_mask:
+            cls.inputs = {**cls.inputs, MASK: make_mask()}
+        else:
+            del additions[INVERT_MASK]
         annotations = {name: annotation for name, (annotation, _) in additions.items()}
         cls.__annotations__ = vars(cls).get("__annotations__", {}) | annotations
         for name, (_, default) in additions.items():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from halation.compiler import Request, compile_graph
 from halation.graph import Graph, Input, Output, Port
-from halation.nodes import Kind, Node, built_in_nodes
+from halation.nodes import Kind, Node, Temporal, built_in_nodes
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.color.invert import Invert
@@ -17,6 +17,7 @@ from halation.resources.picture import Picture
 from headers import Headers
 
 MASKABLE = [node for node in built_in_nodes().values() if node.has_mask]
+OWN_MASK = [node for node in built_in_nodes().values() if node.has_mix and not node.has_mask]
 CUBE = "tests/data/warm.cube"
 
 
@@ -41,6 +42,19 @@ def test_the_first_output_is_mixed_with_the_picture(renderer, node):
     np.testing.assert_array_equal(masked[:, -4:], after[:, -4:])
     rounding = 1e-6 * float(np.abs(after).max())
     np.testing.assert_allclose(masked, before + (after - before) * mask, rtol=1e-5, atol=rounding)
+
+
+@pytest.mark.parametrize("node", OWN_MASK, ids=lambda node: node.id)
+def test_a_node_with_a_mask_of_its_own_is_mixed_too(renderer, node):
+    """Its mask works as ever, and what comes out is mixed with the picture."""
+    pictures = make_pictures(node, (24, 16), np.random.default_rng(3))
+    values, before, output = find_changing_values(node, CUBE), pictures["image"], next(iter(node.outputs))
+    after = render_node(renderer, node(**values), pictures)[output]
+    mixed = render_node(renderer, node(**values, mix=0.25), pictures)[output]
+    rounding = 1e-6 * float(np.abs(after).max())
+    np.testing.assert_allclose(mixed, before + (after - before) * 0.25, rtol=1e-5, atol=rounding)
+    if not issubclass(node, Temporal):  # what it remembers is made all the same
+        np.testing.assert_array_equal(render_node(renderer, node(**values, mix=0.0), pictures)[output], before)
 
 
 @pytest.mark.parametrize("node", [Exposure(stops=-2.0), GaussianBlur(sigma=2.0)], ids=lambda node: node.id)
@@ -119,6 +133,6 @@ def test_a_mix_of_zero_passes_the_picture_through(run):
 
 
 def test_nodes_of_another_size_and_with_masks_of_their_own_have_none():
-    assert not Crop.has_mask
-    assert not NoiseWarp.has_mask
+    assert not Crop.has_mask and not Crop.has_mix
+    assert not NoiseWarp.has_mask and "invert_mask" not in NoiseWarp.values
     assert NoiseWarp.inputs["mask"].doc == "Factor on the amount, pixel by pixel."

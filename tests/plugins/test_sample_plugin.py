@@ -267,5 +267,5 @@ def test_a_mask_of_its_own_is_mentioned(site: Path, tmp_path: Path) -> None:
     shader_file.write_text('#include "lib/finite.glsl"\n' + shader)
     result = halation(copy, "nodes", "--check", "acme_glow.soft_glow")
     assert (result.returncode, result.stdout) == (0, "acme_glow.soft_glow: ok\n"), result
-    note = "it declares 'mask' itself, so that Halation adds no mask, mix and invert_mask"
+    note = "it declares 'mask' itself, so that Halation adds only mix"
     assert f"acme_glow.soft_glow: {note}\n" in result.stderr

@@ -1,4 +1,4 @@
-"""The mask of a node: its result where the mask is 1, and the picture that it was given where the mask is 0.
+"""The mask and the mix of a node: its result where they are 1, and the picture that it was given where they are 0.
 
 It is one pointwise operation after the node, which fuses with what reads it. A node without a mask, whose mix is 1, is
 lowered as if there were no masks.
@@ -15,13 +15,14 @@ from .pictures import PictureBuilder
 
 def hides_node(node: Node) -> bool:
     """True if the mix of a node is 0, so that its picture passes through; a node with a memory still has to work."""
-    return node.has_mask and node.setting(MIX) == 0.0 and not isinstance(node, Temporal)
+    return node.has_mix and node.setting(MIX) == 0.0 and not isinstance(node, Temporal)
 
 
 def is_masked(inputs: NodeInputs) -> bool:
     """True if a mask is linked to a node, or its mix is not 1."""
     node = inputs.node
-    return node.has_mask and (MASK in inputs.linked or MIX in inputs.wires or node.setting(MIX) != 1.0)
+    has_link = (node.has_mask and MASK in inputs.linked) or MIX in inputs.wires
+    return node.has_mix and (has_link or node.setting(MIX) != 1.0)
 
 
 def add_mask(
@@ -36,13 +37,15 @@ def add_mask(
         return pictures.fit(operand, shape.size, inputs.path) if isinstance(operand, Ref) else operand
 
     glsl = "float" if shape.channels == 1 else "vec4"
-    inverted = inputs.wires.get(INVERT_MASK, UniformConstant(bool(node.setting(INVERT_MASK))))
-    if MASK not in inputs.linked:
-        inverted = UniformConstant(False)
+    mask: Operand = UniformConstant(1.0)
+    inverted: Operand = UniformConstant(False)
+    if node.has_mask and MASK in inputs.linked:
+        mask = fit(inputs.inputs[MASK])
+        inverted = inputs.wires.get(INVERT_MASK, UniformConstant(bool(node.setting(INVERT_MASK))))
     parameters = (
         Parameter(glsl, fit(before)),
         Parameter(glsl, after),
-        Parameter("float", fit(inputs.inputs[MASK])),
+        Parameter("float", mask),
         Parameter("float", fit(inputs.wires.get(MIX, UniformConstant(float(node.setting(MIX)))))),
         Parameter("bool", fit(inverted)),
     )

@@ -219,7 +219,7 @@ class CallWriter:
                 raise _refuse(path, f"the numpy text for '{node.id}' has no input '{name}': unlink it")
         for name in feeds.keys() & DERIVED.get(node.id, ((),))[0]:
             raise _refuse(path, f"its value '{name}' is linked, and numpy text takes only a number there")
-        mask_values = {MIX, INVERT_MASK} if node.has_mask else set[str]()
+        mask_values = {*([MIX] if node.has_mix else []), *([INVERT_MASK] if node.has_mask else [])}
         for name in settings[0].keys() - set(names) - mask_values:
             changed = any(setting[name] != node.values[name].default for setting in settings if name in node.values)
             if changed or name in feeds:
@@ -288,7 +288,8 @@ class CallWriter:
     # --- the mask ---------------------------------------------------------------------------------------------------
 
     def _is_masked(self, node: Node, feeds: dict[str, Port]) -> bool:
-        return node.has_mask and (MASK in feeds or MIX in feeds or node.setting(MIX) != 1.0)
+        has_link = (node.has_mask and MASK in feeds) or MIX in feeds
+        return node.has_mix and (has_link or node.setting(MIX) != 1.0)
 
     def _write_mask(self, node: Node, feeds: dict[str, Port], target: str, size: Size) -> None:
         """A second line, which keeps the picture where the mask is 0."""
@@ -298,10 +299,10 @@ class CallWriter:
             if name in feeds:
                 raise GraphError(f"a link to '{name}' has no numpy text: set a number")
         before = self._write_input(node.inputs[MASKED], feeds[MASKED], _PLAIN, size)
-        mask = "1.0"
-        if MASK in feeds:
+        mask, inverted = "1.0", False
+        if node.has_mask and MASK in feeds:
             mask = str(self._write_input(node.inputs[MASK], feeds[MASK], _PLAIN, size))
-        inverted = MASK in feeds and bool(node.setting(INVERT_MASK))
+            inverted = bool(node.setting(INVERT_MASK))
         arguments = [str(before), target, mask, f"mix={write_plain(float(node.setting(MIX)))}"]
         self.outline.helpers.add("masked")
         self.outline.calls.append(
