@@ -21,8 +21,8 @@ photographic stops, `ratio` a factor, `count` a whole number of things, `s` seco
 
 Every node that changes its input `image` at the same size has a mask: an input `mask` says where the change is seen,
 from 0 to 1, and without a link it is seen everywhere. The value `mix` (0 to 1) says how much of it is seen, and
-`invert_mask` exchanges inside and outside. The mask applies to the first output. Nodes with a mask of their own say
-what it does. An output that is an `Image or Field as image` is a Field if a Field is linked to `image`.
+`invert_mask` exchanges inside and outside. Both apply to the first output. Nodes with a mask of their own say what it
+does, and have only the mix. An output that is an `Image or Field as image` is a Field if a Field is linked to `image`.
 """
 
 
