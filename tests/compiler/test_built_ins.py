@@ -19,7 +19,7 @@ CODE = """vec4 probe(vec4 image, int mode // = screen, one of add | screen
 ) {
     ivec2 p = pixel + 0 * extent + 0 * image_size;
     vec4 c = image_at(p) + image_near(vec2(p) + 0.5) + image_raw(p);
-    bool fine = inside(p, image_size) && !is_hole(c) && mode == MODE_SCREEN;
+    bool fine = inside(p, image_size) && image_has(p) && !is_hole(c) && mode == MODE_SCREEN;
     return fine ? c + vec4(float(frame) * proxy) : vec4(0.0);
 }"""
 
