@@ -109,6 +109,18 @@ def test_a_package_remembers_frames(cli, graphs, tmp_path: Path) -> None:
     assert np.abs(read_package(tmp_path / "look", "frame=4") - ours).max() <= 2e-3 * np.abs(ours).max()
 
 
+def test_a_control_may_keep_the_passes_in_a_part_of_its_range(cli, tmp_path: Path) -> None:
+    """Short shafts have other passes for most places of the light."""
+    size = ("--size", "480x270")
+    result = cli("export", "light_shafts", "--to", "glsl", "-o", tmp_path / "look", *size)
+    assert result.code == 0, result.err
+    words = ("--precision", "float", "--set", "length=0.005", "--set", "beams=3")
+    assert cli("render", "light_shafts", "-o", tmp_path / "ours.exr", *size, *words).code == 0
+    ours = read(tmp_path / "ours.exr")
+    theirs = read_package(tmp_path / "look", "length=0.005", "beams=3")
+    assert np.abs(theirs - ours).max() <= 2e-3 * np.abs(ours).max()
+
+
 def test_what_a_package_says(folder: Path) -> None:
     package = json.loads((folder / "passes.json").read_text())
     controls = {control["name"]: control for control in package["controls"]}

@@ -107,9 +107,12 @@ class _Assembly:
             places = list(self.samples[knob.name])
             if span := spans.get(knob.name):
                 places = [x for x in places if span.low <= x <= span.high]
-            places = find_needed_places(self.samples[knob.name], places)
-            samples = {x: planner.take_like(rest, {**middle, knob.name: x}, knob, phase) for x in places}
-            by_knob[knob.name] = {x: sample for x, sample in samples.items() if sample}
+            needed_places = find_needed_places(self.samples[knob.name], places)
+            samples = {x: planner.take_like(rest, {**middle, knob.name: x}, knob, phase) for x in needed_places}
+            if not all(samples.values()):  # the knob changes these passes in a part of its range: which one, all say
+                samples = {x: planner.take_like(rest, {**middle, knob.name: x}, knob, phase) for x in places}
+            if fitting := {x: sample for x, sample in samples.items() if sample}:
+                by_knob[knob.name] = fitting
         checks = planner.sample_checks(middle, knobs, spans, rest, phase)
 
         @cache
