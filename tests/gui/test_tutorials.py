@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 from gui_driver import Ui
 from halation import presets
-from halation.editor.tutorials.coach import fit_frame, place_card
+from halation.editor.tutorials.coach import Coach, fit_frame, place_card
 from halation.editor.tutorials.course import COURSE
 from halation.editor.tutorials.lessons import LESSONS
 
@@ -198,6 +198,24 @@ def test_the_frame_stays_inside_of_the_panel_of_its_widget() -> None:
     assert fit_frame((402.0, 280.0, 598.0, 310.0), widgets, 5.0) == (400.0, 275.0, 600.0, 300.0), "cut at the edges"
     assert fit_frame((402.0, 290.0, 598.0, 340.0), widgets, 5.0) is None, "scrolled away"
     assert fit_frame((10.0, 310.0, 40.0, 330.0), widgets, 5.0) == (5.0, 305.0, 45.0, 335.0), "the timeline is no panel"
+
+
+def test_no_frame_is_drawn_over_a_dialog(gui, monkeypatch: pytest.MonkeyPatch) -> None:
+    frames: list[object] = []
+    monkeypatch.setattr(Coach, "_draw_frame", lambda self, frame: frames.append(frame))
+
+    def body(ui: Ui) -> None:
+        open_lesson(ui, "first_look")
+        ui.wait(2)
+        assert frames
+        ui.keys("F1")
+        ui.until(lambda: ui.editor.dialogs.any)
+        ui.wait(1)
+        frames.clear()
+        ui.wait(3)
+        assert not frames and ui.editor.dialogs.any
+
+    gui(body)
 
 
 def test_a_lesson_of_the_course_shows_passes_is_solved_and_stays_finished(gui) -> None:

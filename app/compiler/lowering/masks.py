@@ -6,6 +6,8 @@ lowered as if there were no masks.
 
 from __future__ import annotations
 
+from collections.abc import Container
+
 from halation.nodes import INVERT_MASK, MASK, MIX, Node, Temporal
 
 from ..ir import Builder, Call, Operand, Parameter, Ref, UniformConstant
@@ -18,10 +20,9 @@ def hides_node(node: Node) -> bool:
     return node.has_mix and node.setting(MIX) == 0.0 and not isinstance(node, Temporal)
 
 
-def is_masked(inputs: NodeInputs) -> bool:
-    """True if a mask is linked to a node, or its mix is not 1."""
-    node = inputs.node
-    has_link = (node.has_mask and MASK in inputs.linked) or MIX in inputs.wires
+def is_masked(node: Node, linked: Container[str]) -> bool:
+    """True if a mask is linked to a node, or its mix is not 1. `linked` are the inputs and values that have links."""
+    has_link = (node.has_mask and MASK in linked) or MIX in linked
     return node.has_mix and (has_link or node.setting(MIX) != 1.0)
 
 

@@ -116,7 +116,7 @@ class NodeLowering:
         else:
             assert isinstance(scaled_node, Filter | Pointwise)
             outputs = self._lower_filter(inputs, self._set_wired(inputs, scaled_node, step), size, step)
-        if before is not None and masks.is_masked(inputs):
+        if before is not None and masks.is_masked(inputs.node, {*inputs.linked, *inputs.wires}):
             first = next(iter(outputs))
             outputs[first] = masks.add_mask(self._builder, self._pictures, inputs, before, outputs[first])
         return outputs

@@ -11,7 +11,7 @@ _ROUNDING = 0.01
 """Pixels: places in 32 bits are exact to this up to 131,072 pixels."""
 
 _NEAR = 8192.0
-"""Pixels up to which distances in 32 bits are exact to a third of that. They take half the time of those in 64."""
+"""Pixels up to which distances in 32 bits are exact to a third of `_ROUNDING`: those take half the time of 64 bits."""
 
 
 class NearChords(NamedTuple):

@@ -108,11 +108,11 @@ class _Assembly:
             if span := spans.get(knob.name):
                 places = [x for x in places if span.low <= x <= span.high]
             needed_places = find_needed_places(self.samples[knob.name], places)
-            samples = {x: planner.take_like(rest, {**middle, knob.name: x}, knob, phase) for x in needed_places}
-            if not all(samples.values()):  # the knob changes these passes in a part of its range: which one, all say
-                samples = {x: planner.take_like(rest, {**middle, knob.name: x}, knob, phase) for x in places}
-            if fitting := {x: sample for x, sample in samples.items() if sample}:
-                by_knob[knob.name] = fitting
+            samples = planner.take_along(rest, middle, knob, needed_places, phase)
+            if len(samples) < len(needed_places):  # the knob changes these passes in a part of its range
+                samples = planner.take_along(rest, middle, knob, places, phase)
+            if samples:
+                by_knob[knob.name] = samples
         checks = planner.sample_checks(middle, knobs, spans, rest, phase)
 
         @cache

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from halation.nodes import Value
@@ -77,12 +77,18 @@ class PointPlanner:
 
         return Phase(memories, GraphSampler(self.graph, self.controls, plan))
 
-    def take_like(self, rest: Sample, point: Point, knob: Knob, phase: Phase) -> Sample | None:
-        """The sample at a point, or beside it where a node is left out; None where the passes are others anyway."""
-        sample = phase.take(point)
-        if sample.structure != rest.structure and not knob.is_whole:
-            sample = phase.take({**point, knob.name: _step_aside(point[knob.name], knob)})
-        return sample if sample.structure == rest.structure else None
+    def take_along(
+        self, rest: Sample, point: Point, knob: Knob, places: Sequence[float], phase: Phase
+    ) -> dict[float, Sample]:
+        """Samples along a knob with the passes of `rest`: at places, or beside them where a node is left out."""
+        samples: dict[float, Sample] = {}
+        for x in places:
+            sample = phase.take({**point, knob.name: x})
+            if sample.structure != rest.structure and not knob.is_whole:
+                sample = phase.take({**point, knob.name: _step_aside(x, knob)})
+            if sample.structure == rest.structure:
+                samples[x] = sample
+        return samples
 
     def find_base(self, knobs: list[Knob], phase: Phase) -> dict[str, float]:
         """A point near the settings of the graph at which no node is left out."""

@@ -9,7 +9,7 @@ from halation.nodes import INVERT_MASK, MASK, MASKED, MIX, Filter, Node, Size, S
 from ...compiler import Ref
 from ...compiler.ir import Operand, UniformConstant
 from ...compiler.lowering.expand import find_stand_in, make_zero
-from ...compiler.lowering.masks import hides_node
+from ...compiler.lowering.masks import hides_node, is_masked
 from ...compiler.lowering.node_inputs import takes_field
 from ...compiler.lowering.steps import field_port
 from ...errors import GraphError
@@ -116,7 +116,7 @@ class CallWriter:
         arguments = self._write_arguments(path, node, feeds, function, size, common)
         targets = self._name_outputs(path, node)
         self.outline.calls.append(ScriptCall(targets, node.id, arguments))
-        if self._is_masked(node, feeds):
+        if is_masked(node, feeds):
             self._write_mask(node, feeds, targets[0], size)
 
     def _find_passed(self, path: str, node: Node, feeds: dict[str, Port]) -> dict[str, str | None] | None:
@@ -219,7 +219,7 @@ class CallWriter:
                 raise _refuse(path, f"the numpy text for '{node.id}' has no input '{name}': unlink it")
         for name in feeds.keys() & DERIVED.get(node.id, ((),))[0]:
             raise _refuse(path, f"its value '{name}' is linked, and numpy text takes only a number there")
-        mask_values = {*([MIX] if node.has_mix else []), *([INVERT_MASK] if node.has_mask else [])}
+        mask_values = {MIX, INVERT_MASK} if node.has_mask else {MIX} if node.has_mix else set[str]()
         for name in settings[0].keys() - set(names) - mask_values:
             changed = any(setting[name] != node.values[name].default for setting in settings if name in node.values)
             if changed or name in feeds:
@@ -286,10 +286,6 @@ class CallWriter:
         return "HEIGHT" if height == self.outline.size[1] else write_plain(float(height))
 
     # --- the mask ---------------------------------------------------------------------------------------------------
-
-    def _is_masked(self, node: Node, feeds: dict[str, Port]) -> bool:
-        has_link = (node.has_mask and MASK in feeds) or MIX in feeds
-        return node.has_mix and (has_link or node.setting(MIX) != 1.0)
 
     def _write_mask(self, node: Node, feeds: dict[str, Port], target: str, size: Size) -> None:
         """A second line, which keeps the picture where the mask is 0."""
