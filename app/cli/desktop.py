@@ -10,7 +10,7 @@ import typer
 
 from ..errors import UsageError
 from ..resources.program import permanent_command
-from ..resources.user_folders import shared_data_folder
+from ..resources.user_folders import find_desktop_folder
 from .options import AsJson
 from .outcome import print_json
 
@@ -35,7 +35,7 @@ def desktop(
 
     if sys.platform in ("win32", "darwin"):
         raise UsageError("this is for desktops on Linux: on macOS and Windows, the application does this by itself")
-    target = folder or shared_data_folder()
+    target = folder or find_desktop_folder()
     pages = {f"man/man1/{name}": text.encode() for name, text in write_man_pages().items()}
     files = {**desktop_entries(permanent_command()), **pages}
     paths = remove_files(target, files) if remove else install(target, files)

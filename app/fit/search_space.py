@@ -224,11 +224,11 @@ def _find_range(item: _NamedValue, number: float, pattern: ValuePattern, place: 
                 "range that holds it, or set it first with --set"
             )
         return low, high
-    low, high = _declared_range(value, number, place)
+    low, high = _find_declared_range(value, number, place)
     return max(min(low, number), value.minimum), min(max(high, number), value.maximum)
 
 
-def _declared_range(value: Value, number: float, place: int) -> tuple[float, float]:
+def _find_declared_range(value: Value, number: float, place: int) -> tuple[float, float]:
     if value.wheel and isinstance(value.default, tuple):
         gray = value.default[place]
         return gray - value.wheel, gray + value.wheel

@@ -24,7 +24,7 @@ class _SourceGraph(Protocol):
     @property
     def links(self) -> Mapping[Port, Port]: ...
 
-    def declared_source(self, port: Port) -> Socket | None: ...
+    def find_declared_source(self, port: Port) -> Socket | None: ...
 
 
 def find_followed_input(graph: _SourceGraph, port: Port) -> Port | None:
@@ -57,7 +57,7 @@ def find_field_outputs(graph: _SourceGraph) -> Mapping[Port, Socket]:
 def _is_field(graph: _SourceGraph, port: Port) -> bool:
     """True if an output that follows nothing is a Field."""
     try:
-        socket = graph.declared_source(port)
+        socket = graph.find_declared_source(port)
     except GraphError:
         return False
     return socket is not None and socket.kind is Kind.FIELD

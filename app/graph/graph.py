@@ -102,7 +102,7 @@ class Graph(Wired[Item], EndEdits):
 
     def source(self, port: Port) -> Socket | None:
         """The output at `port`, in the type that it follows; None for a node of unknown type. Raises GraphError."""
-        return self.field_outputs.get(port) or self.declared_source(port)
+        return self.field_outputs.get(port) or self.find_declared_source(port)
 
     @cached_property
     def named_values(self) -> dict[str, tuple[Port, int | None]]:
@@ -114,7 +114,7 @@ class Graph(Wired[Item], EndEdits):
         """The outputs that are Fields because they follow an input that a Field is linked to."""
         return find_field_outputs(self)
 
-    def declared_source(self, port: Port) -> Socket | None:
+    def find_declared_source(self, port: Port) -> Socket | None:
         """The output at `port` as its node declares it; None for a node of unknown type. Raises GraphError."""
         if port.node == INPUTS:
             return pick(self.inputs, port.socket, "the graph has no input").socket(port.socket)
@@ -140,7 +140,7 @@ class Graph(Wired[Item], EndEdits):
         if source.node not in self.nodes and source.node != INPUTS:
             return _explain_missing_node(source.node, self.nodes)
         try:
-            start, end = self.declared_source(source), self.target(target)
+            start, end = self.find_declared_source(source), self.target(target)
         except GraphError as error:
             return str(error)
         return start and end and find_type_fault(self, source, start, end, lambda: self.field_outputs)

@@ -18,14 +18,14 @@ class Record(Struct, frozen=True, eq=False):
     def __eq__(self, other: object) -> bool:
         if type(self) is not type(other):
             return NotImplemented
-        fields_of = _compared_fields(type(self))
+        fields_of = _make_field_reader(type(self))
         return fields_of(self) == fields_of(other)
 
     def __hash__(self) -> int:
-        return hash(_compared_fields(type(self))(self))
+        return hash(_make_field_reader(type(self))(self))
 
 
 @cache
-def _compared_fields(kind: type[Record]) -> Callable[[Any], object]:
+def _make_field_reader(kind: type[Record]) -> Callable[[Any], object]:
     """What takes from a record all that it is."""
     return attrgetter(*(name for name in kind.__struct_fields__ if name not in kind.compare_exclude))

@@ -45,7 +45,7 @@ def first_folder() -> Path:
     return Path.home() if here == Path(here.anchor) else here
 
 
-def shared_data_folder() -> Path:
+def find_desktop_folder() -> Path:
     """The user's folder of what programs of the desktop share, such as icons and entries of the menu."""
     import platformdirs
 

@@ -68,7 +68,7 @@ class SharedThread(DrawingThread):
 def choose_thread() -> DrawingThread:
     """The thread that draws for the one that asks."""
     is_main = threading.current_thread() is threading.main_thread()
-    return _main_thread(threading.get_ident()) if is_main else _shared_thread(os.getpid())
+    return _main_thread(threading.get_ident()) if is_main else _get_thread(os.getpid())
 
 
 @cache
@@ -77,6 +77,6 @@ def _main_thread(ident: int) -> DrawingThread:
 
 
 @cache
-def _shared_thread(process: int) -> SharedThread:
+def _get_thread(process: int) -> SharedThread:
     """The thread of a process: one that was forked needs another one."""
     return SharedThread()

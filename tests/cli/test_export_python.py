@@ -229,7 +229,7 @@ def test_links_to_values_masks_groups_and_sizes(cli, graphs, tmp_path: Path) -> 
     graph = graphs(nodes=nodes, links=links)
     assert cli("export", graph, "-o", tmp_path / "look.py").code == 0
     text = (tmp_path / "look.py").read_text()
-    assert "fit(half, WIDTH, HEIGHT)" in text and "masked(" in text and "invert(" not in text
+    assert "fit(half, WIDTH, HEIGHT)" in text and "mix_by_mask(" in text and "invert(" not in text
     assert run(tmp_path / "look.py", "-o", tmp_path / "theirs.npy").returncode == 0
     assert cli("render", graph, "-o", tmp_path / "a.exr", "--precision", "float").code == 0
     np.testing.assert_allclose(np.load(tmp_path / "theirs.npy"), read(tmp_path / "a.exr"), atol=1e-4)

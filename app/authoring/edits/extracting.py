@@ -29,7 +29,7 @@ def extract_graph(graph: Graph, chosen: Collection[ElementId]) -> Graph:
 
 def _with_free_inputs(body: Graph) -> Graph:
     """The graph with an input for each socket that must be linked and is not."""
-    for id, item in _known_items(body):
+    for id, item in _list_known_items(body):
         for socket in signature(item).inputs.values():
             port = Port(id, socket.name)
             if not socket.optional and port not in body.links:
@@ -41,7 +41,7 @@ def _with_free_inputs(body: Graph) -> Graph:
 def _with_free_outputs(body: Graph) -> Graph:
     """The graph with an output for the first result of each node that nothing reads."""
     read = {source.node for source in body.links.values()}
-    for id, item in _known_items(body):
+    for id, item in _list_known_items(body):
         socket = next(iter(signature(item).outputs.values()), None)
         if id not in read and socket is not None:
             name = fresh_name(socket.name, body.outputs)
@@ -52,5 +52,5 @@ def _with_free_outputs(body: Graph) -> Graph:
     return body
 
 
-def _known_items(body: Graph) -> list[tuple[str, Item]]:
+def _list_known_items(body: Graph) -> list[tuple[str, Item]]:
     return [(id, item) for id, item in body.nodes.items() if not isinstance(item, Unknown)]

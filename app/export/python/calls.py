@@ -300,9 +300,9 @@ class CallWriter:
             mask = str(self._write_input(node.inputs[MASK], feeds[MASK], _PLAIN, size))
             inverted = bool(node.setting(INVERT_MASK))
         arguments = [str(before), target, mask, f"mix={write_plain(float(node.setting(MIX)))}"]
-        self.outline.helpers.add("masked")
+        self.outline.helpers.add("mix_by_mask")
         self.outline.calls.append(
-            ScriptCall((target,), "masked", (*arguments, *(["inverted=True"] if inverted else [])))
+            ScriptCall((target,), "mix_by_mask", (*arguments, *(["inverted=True"] if inverted else [])))
         )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .pixels import Array, display_tone, smoothstep
-from .places import bilinear, grid, shifted
+from .places import bilinear, grid, shift_picture
 
 EDGE_STEPS = {
     "low": (1.0, 1.5, 2.0, 4.0, 12.0),
@@ -32,7 +32,7 @@ def fxaa(image: Array, quality: str, subpixel: float, threshold: float, threshol
     """FXAA 3.11 (Lottes 2011): each pixel on an edge is read from a place across it, the nearer an end the farther."""
     height, width = image.shape[:2]
     tone = display_tone(image)
-    near = {(x, y): shifted(tone, x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)}
+    near = {(x, y): shift_picture(tone, x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)}
     here, north, south, west, east = (near[at] for at in ((0, 0), (0, -1), (0, 1), (-1, 0), (1, 0)))
     five = [here, north, south, west, east]
     high = np.max(five, axis=0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .perspective import filtered
+from .perspective import sample_filtered
 from .pixels import Array
 from .places import Edge, grid
 
@@ -87,5 +87,5 @@ def grid_warp(
         here = found & (counts == n)
         for i in range(n * n):
             offset = (np.array([i % n, i // n]) + 0.5) / n - 0.5
-            result[here] += filtered(image, t[here] * cell + slope[here] @ offset, kernel, edge) / (n * n)
+            result[here] += sample_filtered(image, t[here] * cell + slope[here] @ offset, kernel, edge) / (n * n)
     return result.reshape(image.shape)

@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 from scipy.special import erf, erfc
 
 from .pixels import Array, join, length, luminance_of
-from .places import Edge, bilinear, grid, shifted
+from .places import Edge, bilinear, grid, shift_picture
 
 MODES = {"clamp": "nearest", "mirror": "mirror", "reflect": "reflect", "wrap": "wrap", "black": "constant"}
 """The names of edge modes in scipy."""
@@ -28,15 +28,15 @@ def gaussian_weights(sigma: float) -> Array:
     return weights / weights.sum()
 
 
-def convolved(image: Array, weights: Array, axis: int, edge: str) -> Array:
+def convolve_axis(image: Array, weights: Array, axis: int, edge: str) -> Array:
     """The picture with centered weights along one axis: 0 is down, 1 is across."""
     return ndimage.correlate1d(image, weights, axis=axis, mode=MODES[edge])
 
 
-def blurred(image: Array, sigma: float, edge: str) -> Array:
+def blur_gaussian(image: Array, sigma: float, edge: str) -> Array:
     """The picture blurred with a Gaussian."""
     for axis in (1, 0) if sigma > 0.0 else ():
-        image = convolved(image, gaussian_weights(sigma), axis, edge)
+        image = convolve_axis(image, gaussian_weights(sigma), axis, edge)
     return image
 
 
@@ -44,7 +44,7 @@ def gaussian_blur(image: Array, sigma: float, scale: tuple[float, float], edge: 
     """Blur with a Gaussian, along x and along y."""
     for axis, part in ((1, scale[0]), (0, scale[1])):
         if sigma * part > 0.0:
-            image = convolved(image, gaussian_weights(sigma * part), axis, edge)
+            image = convolve_axis(image, gaussian_weights(sigma * part), axis, edge)
     return image
 
 
@@ -58,7 +58,7 @@ def box_blur(image: Array, kind: str, radius: float, edge: Edge) -> Array:
     weights = np.ones(1)
     for _ in range(times):
         weights = np.convolve(weights, box / (2.0 * radius + 1.0))
-    return convolved(convolved(image, weights, 1, edge), weights, 0, edge)
+    return convolve_axis(convolve_axis(image, weights, 1, edge), weights, 0, edge)
 
 
 def directional_blur(image: Array, angle: float, length: float, shift: float, edge: Edge) -> Array:
@@ -111,10 +111,10 @@ def bilateral_blur(image: Array, sigma: float, sigma_range: float, edge: Edge, g
         for x in range(-radius, radius + 1):
             if x * x + y * y > radius * radius:
                 continue
-            other = shifted(guide, x, y, edge)[..., :3] - guide[..., :3]
+            other = shift_picture(guide, x, y, edge)[..., :3] - guide[..., :3]
             unlike = (other * other).sum(axis=-1, keepdims=True) / (2.0 * sigma_range**2)
             weight = np.exp(-(x * x + y * y) / (2.0 * sigma * sigma) - unlike)
-            total += weight * shifted(image, x, y, edge)
+            total += weight * shift_picture(image, x, y, edge)
             whole += weight
     return total / whole
 
@@ -123,7 +123,7 @@ def sharpen(
     image: Array, amount: float, sigma: float, threshold: float, limit: float, channels: str, edge: Edge
 ) -> Array:
     """An unsharp mask: in + amount * detail, where the detail is in - blur(in), reduced by the threshold."""
-    soft = blurred(image, sigma, edge)
+    soft = blur_gaussian(image, sigma, edge)
     gray = channels == "luminance"
     sharp = luminance_of(image) if gray else image[..., :3]
     detail = sharp - (luminance_of(soft) if gray else soft[..., :3])
@@ -134,8 +134,8 @@ def sharpen(
 def cas_sharpen(image: Array, sharpness: float, edge: Edge) -> Array:
     """Contrast adaptive sharpening of 3 x 3 pixels (AMD FidelityFX CAS, Lottes 2019)."""
     color = image[..., :3]
-    cross = [shifted(color, x, y, edge) for x, y in ((0, -1), (-1, 0), (1, 0), (0, 1))]
-    corners = [shifted(color, x, y, edge) for x, y in ((-1, -1), (1, -1), (-1, 1), (1, 1))]
+    cross = [shift_picture(color, x, y, edge) for x, y in ((0, -1), (-1, 0), (1, 0), (0, 1))]
+    corners = [shift_picture(color, x, y, edge) for x, y in ((-1, -1), (1, -1), (-1, 1), (1, 1))]
     least, most = np.minimum.reduce([*cross, color]), np.maximum.reduce([*cross, color])
     least = least + np.minimum.reduce([*corners, least])
     most = most + np.maximum.reduce([*corners, most])
@@ -168,7 +168,7 @@ def ladder_weights(t: Array, is_shaped: bool) -> list[Array]:
 def variable_blur(image: Array, sigma: float, edge: Edge, field: Array | None = None) -> Array:
     """Blur every pixel with a Gaussian of its own, sigma * field, mixed from a ladder of blurs, three to an octave."""
     if field is None or sigma <= 0.1:
-        return blurred(image, sigma, edge)
+        return blur_gaussian(image, sigma, edge)
     step = 2.0 ** (2.0 / 3.0)
     full = float(variance_of(sigma))
     last = max(ceil(np.log(full / 0.16) / np.log(step)), 0)
@@ -182,7 +182,7 @@ def variable_blur(image: Array, sigma: float, edge: Edge, field: Array | None = 
     t = rung - above
     total = np.maximum(rung - last, 0.0) * image
     for number, each in enumerate(sigmas):
-        soft, away = blurred(image, each, edge), number - above
+        soft, away = blur_gaussian(image, each, edge), number - above
         shaped, plain = ladder_weights(t, True), ladder_weights(t, False)
         for place in range(3):
             weight = np.where(above < last - 1, shaped[place], plain[place])

@@ -12,7 +12,7 @@ from .pixels import (
     largest,
     luminance_of,
     mix,
-    premultiplied,
+    premultiply_color,
     rgb,
     smallest,
     smoothstep,
@@ -49,7 +49,7 @@ def grade(image: Array, lift: Array, gamma: Array, gain: Array, offset: Array, a
     lifted = image[..., :3] * (rgb(gain) - rgb(lift)) + alpha * (rgb(lift) + rgb(offset))
     color, _ = straight(join(lifted, alpha))
     bent = np.maximum(color, 0.0) ** (1.0 / np.maximum(rgb(gamma), 1e-3))
-    return mix(image, premultiplied(np.where(color > 0.0, bent, color), alpha), amount)
+    return mix(image, premultiply_color(np.where(color > 0.0, bent, color), alpha), amount)
 
 
 def cdl(image: Array, style: str, slope: Array, offset: Array, power: Array, saturation: Array | float) -> Array:
@@ -63,7 +63,7 @@ def cdl(image: Array, style: str, slope: Array, offset: Array, power: Array, sat
         color = np.clip(color, 0.0, 1.0)
     color = np.where(color > 0.0, np.maximum(color, 1e-30) ** np.maximum(rgb(power), 0.0), color)
     color = mix(luminance_of(color), color, saturation)
-    return premultiplied(np.clip(color, 0.0, 1.0) if style == "asc" else color, alpha)
+    return premultiply_color(np.clip(color, 0.0, 1.0) if style == "asc" else color, alpha)
 
 
 def color_balance(
@@ -82,7 +82,7 @@ def color_balance(
     """Three color wheels, as Blender's Color Balance: lift moves black in sRGB codes, gain multiplies them, gamma is a
     power of the light. The three amounts say in which tones the change is seen."""
 
-    def graded(color: Array) -> Array:
+    def grade_codes(color: Array) -> Array:
         code = np.maximum((1.0 + (srgb_encode(color) - 1.0) * (2.0 - rgb(lift))) * rgb(gain), 0.0)
         return np.maximum(srgb_decode(code), 0.0) ** (1.0 / np.maximum(rgb(gamma), 1e-4))
 
@@ -93,12 +93,14 @@ def color_balance(
     top = smoothstep(high - half, high + half, tone)
     ranges = np.concatenate([1.0 - above, above * (1.0 - top), above * top], axis=-1)
     if show == "ranges":
-        return premultiplied(ranges, alpha)
-    changed = graded(color)
-    changed = np.where(alpha > 1e-6, changed, changed - graded(np.zeros((1, 1, 3))))  # transparent pixels stay black
+        return premultiply_color(ranges, alpha)
+    changed = grade_codes(color)
+    changed = np.where(
+        alpha > 1e-6, changed, changed - grade_codes(np.zeros((1, 1, 3)))
+    )  # transparent pixels stay black
     amounts = [np.clip(amount, 0.0, 1.0) for amount in (shadows, midtones, highlights)]
     amount = sum(part * ranges[..., at : at + 1] for at, part in enumerate(amounts))
-    return premultiplied(mix(color, changed, amount), alpha)
+    return premultiply_color(mix(color, changed, amount), alpha)
 
 
 def channel_mixer(
@@ -126,7 +128,7 @@ def clip(image: Array, low: Array | float, high: Array | float) -> Array:
     """Limit every channel to a range; transparent pixels stay black."""
     color, alpha = straight(image)
     lowest = np.where(alpha > 1e-6, low, np.minimum(low, 0.0))
-    return premultiplied(np.maximum(np.minimum(color, high), lowest), alpha)
+    return premultiply_color(np.maximum(np.minimum(color, high), lowest), alpha)
 
 
 def levels(
@@ -150,7 +152,7 @@ def levels(
         level = np.clip(level, 0.0, 1.0)
     level = np.where(level > 0.0, np.maximum(level, 0.0) ** (1.0 / np.maximum(gamma, 0.01)), level)
     code = level * np.subtract(high, low) + covered * low
-    return premultiplied(srgb_decode(code) if space == "display" else code, alpha)
+    return premultiply_color(srgb_decode(code) if space == "display" else code, alpha)
 
 
 def invert(image: Array, space: str, amount: Array | float) -> Array:
@@ -162,7 +164,7 @@ def invert(image: Array, space: str, amount: Array | float) -> Array:
         negative = 1.0 - color
     else:
         negative = 0.18**2 / np.clip(color, 0.18 / 256.0, 0.18 * 256.0)
-    return premultiplied(mix(color, negative, np.where(alpha > 1e-6, amount, 0.0)), alpha)
+    return premultiply_color(mix(color, negative, np.where(alpha > 1e-6, amount, 0.0)), alpha)
 
 
 def posterize(image: Array, levels: Array | float, space: str, channels: str, amount: Array | float) -> Array:
@@ -178,7 +180,7 @@ def posterize(image: Array, levels: Array | float, space: str, channels: str, am
     light = luminance_of(color)
     ratio = np.where(light > 0.0, level(light) / np.where(light > 0.0, light, 1.0), 0.0)
     rounded = level(color) if channels == "separate" else color * ratio
-    return premultiplied(mix(color, rounded, amount), alpha)
+    return premultiply_color(mix(color, rounded, amount), alpha)
 
 
 def split_toning(
@@ -203,7 +205,7 @@ def split_toning(
     bright = smoothstep(-0.5, 0.5, stops / np.maximum(range, 0.01))
     toned = color * mix(1.0, mix(tint(shadows), tint(highlights), bright), amount)
     toned = toned * np.clip(safe / np.maximum(luminance_of(toned), 1e-12), 0.0, 14.0)  # 14: blue has 0.0722
-    return np.where(light > 0.0, premultiplied(toned, alpha), image)
+    return np.where(light > 0.0, premultiply_color(toned, alpha), image)
 
 
 def vignette(
@@ -287,7 +289,7 @@ def curves(
     color, alpha = straight(image)
     changed = bent(color)
     changed = np.where(alpha > 1e-6, changed, changed - bent(np.zeros((1, 1, 3))))  # transparent pixels stay black
-    return premultiplied(changed, alpha)
+    return premultiply_color(changed, alpha)
 
 
 def ramp_at(stops: tuple[float, ...], t: Array, smooth: bool = False) -> Array:
@@ -313,15 +315,15 @@ def gradient_map(
 ) -> Array:
     """Map brightness to the colors of a ramp, in stops, sRGB codes or light between `low` and `high`."""
 
-    def scaled(light: Array | float) -> Array:
+    def scale_light(light: Array | float) -> Array:
         if scale == "stops":
             return np.log2(np.maximum(light, 1e-5))
         return srgb_encode(np.asarray(light)) if scale == "display" else np.asarray(light)
 
     color, alpha = straight(image)
-    span = scaled(high) - scaled(low)
+    span = scale_light(high) - scale_light(low)
     span = np.where(np.abs(span) < 1e-6, 1e-6, span)  # equal ends: a step
-    t = np.clip((scaled(luminance_of(color)) - scaled(low)) / span, 0.0, 1.0)
+    t = np.clip((scale_light(luminance_of(color)) - scale_light(low)) / span, 0.0, 1.0)
     painted = ramp_at(ramp, 1.0 - t if reverse else t, smooth)
     covered = painted[..., 3:] * alpha
     return mix(image, join(painted[..., :3] * covered, covered), amount)
@@ -337,4 +339,4 @@ def toon(image: Array, levels: Array | float, sharpness: Array | float) -> Array
     middle = (np.floor(tone / step) + 0.5) * step
     tone = np.maximum(middle + 0.5 * step * np.tanh(sharp * (tone - middle) / step) / np.tanh(0.5 * sharp), 0.0)
     painted = color * srgb_decode(tone) / np.where(light > 0.0, light, 1.0)
-    return np.where(light > 0.0, premultiplied(painted, alpha), image)
+    return np.where(light > 0.0, premultiply_color(painted, alpha), image)

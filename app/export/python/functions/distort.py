@@ -13,7 +13,7 @@ from .pixels import Array, length
 from .places import Edge, bilinear, fold, grid, kernel_radius, kernel_weight, pixels_at, warp, warp_by_counts
 
 
-def turned_by(away: Array, angle: Array | float) -> Array:
+def rotate_vectors(away: Array, angle: Array | float) -> Array:
     """Vectors [..., 2] rotated, x toward y."""
     x, y, cos, sin = away[..., :1], away[..., 1:], np.cos(angle), np.sin(angle)
     return np.concatenate([cos * x - sin * y, sin * x + cos * y], axis=-1)
@@ -41,7 +41,7 @@ def backward_matrix(
     return np.column_stack([matrix, np.asarray(pivot) - matrix @ np.add(pivot, position)])
 
 
-def placed(image: Array, matrix: Array, kernel: str, edge: str) -> Array:
+def resample_through(image: Array, matrix: Array, kernel: str, edge: str) -> Array:
     """Resample a picture through a matrix, with a kernel that is wider where the picture shrinks."""
     height, width = image.shape[:2]
     center = grid(width, height) @ matrix[:, :2].T + matrix[:, 2]
@@ -78,7 +78,7 @@ def transform(
     """Scale, skew, rotate around the pivot, and move (kernels: Mitchell and Netravali 1988)."""
     height, width = image.shape[:2]
     matrix = backward_matrix(position, rotation, scale, skew, (pivot[0] * width, pivot[1] * height), direction)
-    return placed(image, matrix, kernel, edge)
+    return resample_through(image, matrix, kernel, edge)
 
 
 def crop(
@@ -145,7 +145,7 @@ def swirl(image: Array, angle: float, radius: float, center: tuple[float, float]
 
     def source(at: Array) -> Array:
         away = at - middle
-        return middle + turned_by(away, -angle * np.exp(-(away * away).sum(axis=-1, keepdims=True) / radius**2))
+        return middle + rotate_vectors(away, -angle * np.exp(-(away * away).sum(axis=-1, keepdims=True) / radius**2))
 
     return warp(image, source, edge)
 
@@ -204,27 +204,25 @@ def polar(
     if direction == "unwrap":
         pixel_angle, ring = 2.0 * np.pi / width, radius / height
 
-        def unwrapped(at: Array) -> Array:
+        def unroll(at: Array) -> Array:
             angle = at[..., :1] * pixel_angle + rotation
             return middle + at[..., 1:] * ring * np.concatenate([np.cos(angle), np.sin(angle)], axis=-1)
 
-        return warp_by_counts(
-            image, unwrapped, edge, np.maximum(pixel_angle * grid(width, height)[..., 1:] * ring, ring)
-        )
+        return warp_by_counts(image, unroll, edge, np.maximum(pixel_angle * grid(width, height)[..., 1:] * ring, ring))
 
     def place_of(at: Array) -> Array:
         away = at - middle
         angle = np.where(length(away) > 0.0, np.arctan2(away[..., 1:], away[..., :1]) - rotation, 0.0)
         return np.concatenate([(angle / (2.0 * np.pi)) % 1.0 * width, length(away) / radius * height], axis=-1)
 
-    def wrapped(at: Array) -> Array:
+    def wrap_around(at: Array) -> Array:
         place = place_of(at)
         return np.concatenate([place[..., :1], np.clip(place[..., 1:], 0.5, height - 0.5)], axis=-1)
 
     far = np.maximum(length(grid(width, height) - middle), 0.5)
     span = np.maximum(width / (2.0 * np.pi * far), height / radius)
     return warp_by_counts(
-        image, wrapped, "wrap", span, None if edge != "black" else lambda at: place_of(at)[..., 1:] <= height
+        image, wrap_around, "wrap", span, None if edge != "black" else lambda at: place_of(at)[..., 1:] <= height
     )
 
 
@@ -310,7 +308,7 @@ def noise_warp(
     return result
 
 
-def refracted(slope: Array, thickness: float, index: float) -> Array:
+def refract(slope: Array, thickness: float, index: float) -> Array:
     """The offset at which a picture is seen through a surface of this slope (Snell's law)."""
     normal = np.concatenate([-slope, np.ones_like(slope[..., :1])], axis=-1)
     normal = normal / length(normal)
@@ -350,12 +348,12 @@ def glass(
         along = 0.5 * (padded[2:, 1:-1] - padded[:-2, 1:-1])
     slope = relief * np.concatenate([across, along], axis=-1)
     if dispersion == 0.0:
-        return bilinear(image, at + refracted(slope, thickness, index), edge)
+        return bilinear(image, at + refract(slope, thickness, index), edge)
     total, whole = np.zeros_like(image), np.zeros(4)
     for i in range(samples):
         place = 2.0 * i / (samples - 1) - 1.0
         response = spectrum_response(place)
-        total += response * bilinear(image, at + refracted(slope, thickness, index + 0.5 * place * dispersion), edge)
+        total += response * bilinear(image, at + refract(slope, thickness, index + 0.5 * place * dispersion), edge)
         whole += response
     return total / whole
 

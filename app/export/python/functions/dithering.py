@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 
 from .hashing import hash3
-from .pixels import Array, premultiplied, srgb_decode, srgb_encode, straight
+from .pixels import Array, premultiply_color, srgb_decode, srgb_encode, straight
 from .places import grid
 
 
@@ -49,7 +49,7 @@ def dither(
         near = np.abs(code - np.round(code)) < 1e-3  # at a level already, up to rounding
         code = np.ceil(np.where(near, np.round(code), code) - threshold) / steps
         channels.append(srgb_decode(code) if space == "display" else code)
-    return premultiplied(np.concatenate(channels, axis=-1), alpha)
+    return premultiply_color(np.concatenate(channels, axis=-1), alpha)
 
 
 def color_palette(
@@ -68,4 +68,4 @@ def color_palette(
     code = srgb_encode(np.maximum(color, 0.0)) + spread * (threshold - 0.5)
     palette = np.reshape(colors, (-1, 5))[:, 1:4]
     away = code[..., None, :] - srgb_encode(np.maximum(palette, 0.0))
-    return premultiplied(palette[(away * away).sum(axis=-1).argmin(axis=-1)], alpha)
+    return premultiply_color(palette[(away * away).sum(axis=-1).argmin(axis=-1)], alpha)

@@ -7,9 +7,9 @@ from math import ceil
 import numpy as np
 from scipy import ndimage
 
-from .blur import blurred
+from .blur import blur_gaussian
 from .pixels import Array, display_tone, join, largest, length, luminance_of, srgb_decode
-from .places import Edge, bilinear, grid, shifted
+from .places import Edge, bilinear, grid, shift_picture
 from .stylize import structure
 
 
@@ -32,10 +32,10 @@ def edge_detect(
     Every operator is scaled so that a step of height 1 along a row or column gives 1.
     """
     step, sigma, gain = spacing_of(width)
-    soft = blurred(image, sigma, edge)
+    soft = blur_gaussian(image, sigma, edge)
 
     def at(x: int, y: int) -> Array:
-        return shifted(soft[..., :3], x * step, y * step, edge)
+        return shift_picture(soft[..., :3], x * step, y * step, edge)
 
     if operator == "laplace":
         across = at(-1, 0) + at(1, 0) + at(0, -1) + at(0, 1) - 4.0 * soft[..., :3]
@@ -56,7 +56,7 @@ def edge_detect(
 def flow_blurs(tone: Array, sigma: float, ratio: float, smoothing: float, stroke: float, edge: str) -> list[Array]:
     """Two blurs across the lines of a picture, then along them (Kang et al. 2007, Kyprianidis and Döllner 2008)."""
     height, width = tone.shape[:2]
-    tensor = blurred(structure(tone, edge), smoothing, edge)
+    tensor = blur_gaussian(structure(tone, edge), smoothing, edge)
     center = grid(width, height)
     across = most_change(tensor)
     sigmas = np.maximum([sigma, sigma * ratio], 1e-3)
@@ -122,7 +122,7 @@ def difference_of_gaussians(
     if guide == "flow":
         fine, coarse = flow_blurs(tone, sigma, ratio, smoothing, stroke, edge)
     else:
-        fine, coarse = blurred(tone, sigma, edge), blurred(tone, sigma * ratio, edge)
+        fine, coarse = blur_gaussian(tone, sigma, edge), blur_gaussian(tone, sigma * ratio, edge)
     if kind == "dog":
         value = strength * (fine - coarse)
     else:
@@ -144,10 +144,10 @@ def emboss(
 ) -> Array:
     """The tone as a relief, lit from one side: N.L / L.z (Lambert; bump mapping: Blinn 1978)."""
     step, sigma, _ = spacing_of(width)
-    relief = blurred(display_tone(image), np.hypot(softness, sigma), edge)
+    relief = blur_gaussian(display_tone(image), np.hypot(softness, sigma), edge)
 
     def difference(x: int, y: int) -> Array:
-        return shifted(relief, x * step, y * step, edge) - shifted(relief, -x * step, -y * step, edge)
+        return shift_picture(relief, x * step, y * step, edge) - shift_picture(relief, -x * step, -y * step, edge)
 
     falling, rising = difference(1, 1), difference(1, -1)
     across = (2.0 * difference(1, 0) + falling + rising) / (8.0 * step)
@@ -166,7 +166,7 @@ def convolve3x3(
     step, _, _ = spacing_of(width)
     total = np.zeros_like(image)
     for at, weight in enumerate(kernel):
-        total += weight * shifted(image, step * (at % 3 - 1), step * (at // 3 - 1), edge)
+        total += weight * shift_picture(image, step * (at % 3 - 1), step * (at // 3 - 1), edge)
     alpha = total[..., 3:] if filter_alpha else image[..., 3:]
     return join(total[..., :3] + bias * alpha, alpha)
 
@@ -175,7 +175,9 @@ def height_to_normal(height: Array, depth: float, kernel: str, green: str, edge:
     """A normal map: (-dh/dx, -dh/dy, 1) at length 1, and the same as a color."""
 
     def slope(x: int, y: int, right: int, down: int) -> Array:
-        return 0.5 * (shifted(height, right + x, down + y, edge) - shifted(height, right - x, down - y, edge))
+        return 0.5 * (
+            shift_picture(height, right + x, down + y, edge) - shift_picture(height, right - x, down - y, edge)
+        )
 
     across, down = slope(1, 0, 0, 0), slope(0, 1, 0, 0)
     if kernel == "sobel":
@@ -212,10 +214,10 @@ def canny(
 ) -> tuple[Array, Array]:
     """Edges as lines: ridges of the Sobel gradient above two thresholds, weak ones where they touch a strong one."""
     step, softness, gain = spacing_of(width)
-    tone = blurred(display_tone(image), np.hypot(sigma, softness), edge)
+    tone = blur_gaussian(display_tone(image), np.hypot(sigma, softness), edge)
 
     def at(x: int, y: int) -> Array:
-        return shifted(tone, x * step, y * step, edge)
+        return shift_picture(tone, x * step, y * step, edge)
 
     falling, rising = at(1, 1) - at(-1, -1), at(1, -1) - at(-1, 1)
     across = gain / 4.0 * (2.0 * (at(1, 0) - at(-1, 0)) + falling + rising)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .blur import blurred
-from .pixels import Array, luminance_of, premultiplied, straight
+from .blur import blur_gaussian
+from .pixels import Array, luminance_of, premultiply_color, straight
 
 REC709_TO_XYZ = np.array(  # ITU-R BT.709-6
     [
@@ -47,7 +47,7 @@ def scotopic_vision(
     tint = np.maximum(1.0 + blue_shift * (np.array([1.05, 0.97, 1.27]) - 1.0), 0.0)
     rods = brightness * rod_response(np.maximum(color, 0.0) @ REC709_TO_XYZ.T) / white * tint
     share = amount * 0.04 / (0.04 + light)
-    night = premultiplied((1.0 - share) * color + share * rods, alpha)
+    night = premultiply_color((1.0 - share) * color + share * rods, alpha)
     # Sigma of the blur in pixels; 1.86 of it in a period of stripes leave 0.3 percent of them.
     scale = amount * blur * image.shape[1] / np.degrees(field_of_view) / 1.86
     widest = scale * np.sqrt(2.0**-2 - DAYLIGHT**-2)
@@ -57,6 +57,6 @@ def scotopic_vision(
     low, high, result = 0.0, min(0.5, widest), night
     while low < widest:  # between two blurs of the whole picture, by variance
         part = np.clip((sigma**2 - low**2) / (high**2 - low**2), 0.0, 1.0)
-        result = (1.0 - part) * result + part * blurred(night, high, "clamp")
+        result = (1.0 - part) * result + part * blur_gaussian(night, high, "clamp")
         low, high = high, min(high * np.sqrt(2.0), widest)
     return result

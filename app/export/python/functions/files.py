@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .pixels import Array, premultiplied, srgb_decode, srgb_encode, straight
+from .pixels import Array, premultiply_color, srgb_decode, srgb_encode, straight
 from .places import fit
 
 CHANNELS = {1: ["Y"], 2: ["X", "Y"], 3: ["X", "Y", "Z"], 4: ["R", "G", "B", "A"]}
@@ -22,7 +22,7 @@ def read_picture(path: str, layer: str, channels: int, width: int, height: int) 
     else:
         pixels, names = read_file(path, layer)
         if channels == 4 and names == ["integers"]:
-            pixels = premultiplied(srgb_decode(straight(pixels)[0]), pixels[..., 3:])
+            pixels = premultiply_color(srgb_decode(straight(pixels)[0]), pixels[..., 3:])
     pixels = np.nan_to_num(np.asarray(pixels, np.float64), nan=0.0, posinf=65504.0, neginf=-65504.0)
     if channels == 4 and pixels.shape[2] < 4:  # gray or without alpha
         color = np.broadcast_to(pixels[..., :3], (*pixels.shape[:2], 3))
@@ -63,7 +63,7 @@ def write_picture(path: str, pixels: Array) -> None:
 
     if Path(path).suffix != ".exr" and pixels.shape[2] == 4:
         color, alpha = straight(pixels)
-        pixels = premultiplied(srgb_encode(np.clip(color, 0.0, 1.0)), np.clip(alpha, 0.0, 1.0))
+        pixels = premultiply_color(srgb_encode(np.clip(color, 0.0, 1.0)), np.clip(alpha, 0.0, 1.0))
     height, width, channels = pixels.shape
     spec = oiio.ImageSpec(width, height, channels, oiio.FLOAT if Path(path).suffix == ".exr" else oiio.UINT8)
     spec.channelnames = CHANNELS[channels]

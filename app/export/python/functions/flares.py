@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .blur import blurred
-from .glow import bright_light, enlarged, shrunk
+from .blur import blur_gaussian
+from .glow import bright_light, enlarge, shrunk
 from .hashing import hash3
 from .noises import ENDLESS, gradient_noise
 from .pixels import Array, join, length, mix, rgb, smoothstep
@@ -73,11 +73,11 @@ def ghosts(
     height, width = image.shape[:2]
     light = shrunk(bright_light(image, threshold, knee, limit), 2, "clamp")
     rows, columns = light.shape[:2]
-    sharp = blurred(light, max(softness, 4.0) / 2.0, "black")
+    sharp = blur_gaussian(light, max(softness, 4.0) / 2.0, "black")
     axis = np.asarray(center) * (width / 2.0, height / 2.0)
     away = grid(columns, rows) - axis
     outward = away / np.maximum(length(away), 1e-6)
-    flare = veil * blurred(light, 0.15 * rows, "black")[..., :3]
+    flare = veil * blur_gaussian(light, 0.15 * rows, "black")[..., :3]
     for channel in range(3):
         larger, channel_mask = 1.0 + chromatic * (1 - channel), np.eye(3)[channel]
         for number, factor in enumerate(MAGNIFICATIONS[:count]):
@@ -87,7 +87,7 @@ def ghosts(
             flare = flare + ghosts * coating[channel] / magnified**2 * seen * channel_mask
         ring = axis + away - 0.5 * radius * larger * outward
         flare = flare + halo * ghost_light(sharp, ring)[..., :3] * channel_mask
-    flare = enlarged(join(flare, np.ones_like(flare[..., :1])), 2, width, height)[..., :3]
+    flare = enlarge(join(flare, np.ones_like(flare[..., :1])), 2, width, height)[..., :3]
     smudges = lens_smudges(width, height) if dirt is None else np.clip(dirt[..., :3], 0.0, 65504.0)
     glow = join(flare * mix(1.0, smudges, dirt_amount) * rgb(tint), image[..., 3:])
     return join(image[..., :3] + glow[..., :3], image[..., 3:]), glow

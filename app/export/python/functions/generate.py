@@ -212,7 +212,7 @@ def brick(
     at = grid(columns, rows) - np.asarray(offset)
     x, y = at[..., :1], at[..., 1:]
 
-    def moved(row: Array) -> Array:
+    def move_row(row: Array) -> Array:
         return x - np.where((row % every >= every - 1) & (every > 1), shift * wide, 0.0)
 
     value = np.zeros_like(x)
@@ -222,11 +222,11 @@ def brick(
         (high_row, np.where(high_row > low, high_row * high, y + 0.5), y + 0.5),
     ):
         part = brick_length(bottom, high, down) - brick_length(top, high, down)
-        place = moved(row)
+        place = move_row(row)
         value += part * (brick_length(place + 0.5, wide, across) - brick_length(place - 0.5, wide, across))
     value = np.clip(value, 0.0, 1.0)
     row = np.floor(y / high)
-    cell = np.concatenate([np.floor(moved(row) / wide), row, np.zeros_like(row)], axis=-1)
+    cell = np.concatenate([np.floor(move_row(row) / wide), row, np.zeros_like(row)], axis=-1)
     random = hash3(cell, stream_of(seed, 0, 0))[..., :1]
     color = mix(np.asarray(first), np.asarray(second), 0.5 + (random - 0.5) * variety)
     return mix(np.asarray(joint), color, value), value, random

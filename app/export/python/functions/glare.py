@@ -190,7 +190,7 @@ def halo_table(count: int) -> Array:
     return np.sum(rings, axis=0) / np.sum([color for _, color in WAVELENGTHS], axis=0)
 
 
-def scattered(angle: Array, shares: tuple[float, float, float], halo: Array) -> Array:
+def scatter_light(angle: Array, shares: tuple[float, float, float], halo: Array) -> Array:
     """The light that eyes scatter by an angle in degrees, per steradian."""
     away = angle + 0.02
     veil = shares[0] * 20.91 / away**3 + shares[1] * 72.37 / away**2
@@ -237,14 +237,14 @@ def eye_kernel(
         for i in range(n * n):
             inside = way[here] + (np.array([i % n, i // n]) + 0.5) / n - 0.5
             light[here] += (
-                scattered(pitch * np.hypot(inside[:, 0], inside[:, 1]), SCATTERED_SHARES[vision], halo) / n**2
+                scatter_light(pitch * np.hypot(inside[:, 0], inside[:, 1]), SCATTERED_SHARES[vision], halo) / n**2
             )
     safe = np.where(away[..., None] > 0.0, way, 1.0)
     kernel = light * np.radians(pitch) ** 2 * share[..., None] * corona_rays(pitch * safe, pitch * cell, rays)
     return np.concatenate([kernel, kernel.mean(axis=-1, keepdims=True)], axis=-1)
 
 
-def sharpened_kernel(kernel: Array) -> Array:
+def sharpen_kernel(kernel: Array) -> Array:
     """Without the blur that enlarging with tents adds: a variance of 1/3 square pixel, to second order."""
     padded = np.pad(kernel, ((1, 1), (1, 1), (0, 0)), mode="edge")
     around = padded[:-2, 1:-1] + padded[2:, 1:-1] + padded[1:-1, :-2] + padded[1:-1, 2:]
@@ -263,7 +263,7 @@ def eye_glare(image: Array, vision: str, field_of_view: float, rays: float, stre
         glare = light_convolved(light, eye_kernel((width, height), vision, degrees, 1, (0.0, 0.0), rays, halo))
     else:
         small = ceil(width / factor) + 2, ceil(height / factor) + 2
-        wide = sharpened_kernel(eye_kernel(small, vision, degrees, factor, (first, last), rays, halo))
+        wide = sharpen_kernel(eye_kernel(small, vision, degrees, factor, (first, last), rays, halo))
         far = light_convolved(tents_down(light, factor, *small), wide)
         near = light_convolved(light, eye_kernel((reach, reach), vision, degrees, 1, (first, last), rays, halo))
         glare = near + tents_up(far, factor, width, height)

@@ -7,10 +7,10 @@ from typing import Literal
 
 import numpy as np
 
-from .blur import blurred, gaussian_blur
+from .blur import blur_gaussian, gaussian_blur
 from .color import curve_at
 from .pixels import Array, join, largest, luminance_of, mix, rgb, smoothstep
-from .places import Edge, bilinear, extended, grid
+from .places import Edge, bilinear, extend, grid
 
 
 def soft_threshold(light: Array, threshold: Array | float, knee: Array | float) -> Array:
@@ -58,7 +58,7 @@ def shrink_by_two(image: Array, edge: str) -> Array:
     corners, center = np.array([1, 1, 2, 2, 1, 1]), np.array([0, 1, 1, 1, 1, 0])
     weights = (np.outer(corners, corners) + 4.0 * np.outer(center, center)) / 128.0
     height, width = image.shape[:2]
-    padded = extended(image, 2, 4, edge)
+    padded = extend(image, 2, 4, edge)
     rows, columns = (height + 1) // 2, (width + 1) // 2
     parts = [weights[y, x] * padded[y : y + 2 * rows : 2, x : x + 2 * columns : 2] for y in range(6) for x in range(6)]
     return np.sum(parts, axis=0)
@@ -66,7 +66,7 @@ def shrink_by_two(image: Array, edge: str) -> Array:
 
 def shrink_steadily(image: Array, edge: str) -> Array:
     """The same boxes, each weighted by 1 / (1 + luminance), so that a single bright pixel does not flicker (Karis)."""
-    padded = extended(image, 2, 4, edge)
+    padded = extend(image, 2, 4, edge)
     rows, columns = (image.shape[0] + 1) // 2, (image.shape[1] + 1) // 2
     total, whole = 0.0, 0.0
     for down, right, part in ((0, 0, 1.0), (0, 2, 1.0), (2, 0, 1.0), (2, 2, 1.0), (1, 1, 4.0)):
@@ -80,7 +80,7 @@ def shrink_steadily(image: Array, edge: str) -> Array:
     return np.asarray(total / whole)
 
 
-def halved(image: Array, edge: str, firefly: bool) -> Array:
+def halve(image: Array, edge: str, firefly: bool) -> Array:
     """The picture at half its size."""
     if firefly:
         return shrink_steadily(image, edge)
@@ -90,7 +90,7 @@ def halved(image: Array, edge: str, firefly: bool) -> Array:
 def grow_by_two(image: Array, width: int, height: int, edge: str) -> Array:
     """Twice the size: the tent filter [1 2 1] on bilinear samples, which is four taps along each axis."""
     tent = np.array([1.0, 5.0, 7.0, 3.0]) / 16.0
-    padded = extended(image, 2, 2, edge)
+    padded = extend(image, 2, 2, edge)
     for axis, size in ((0, height), (1, width)):
         place = np.arange(size)
         first = (place + 1) // 2  # of the padded picture
@@ -111,9 +111,9 @@ def glow_pyramid(light: Array, shares: list[float], edge: str, firefly: bool = F
     height, width = light.shape[:2]
     if edge != "clamp" and (width % 2 or height % 2):  # at an odd size the edge would mean other pixels: pad once
         margin = 7 * 2 ** len(shares)
-        wide = extended(light, margin, margin, edge)
+        wide = extend(light, margin, margin, edge)
         return glow_pyramid(wide, shares, "clamp", firefly)[margin : margin + height, margin : margin + width]
-    below = halved(light, edge, firefly)
+    below = halve(light, edge, firefly)
     if len(shares) > 1:
         below = glow_pyramid(below, shares[1:], edge)
     return mix(light, grow_by_two(below, width, height, edge), shares[0])
@@ -233,7 +233,7 @@ def shrunk(image: Array, factor: int, edge: str) -> Array:
     return padded.reshape(rows, factor, columns, factor, 4).mean(axis=(1, 3))
 
 
-def enlarged(image: Array, factor: int, width: int, height: int) -> Array:
+def enlarge(image: Array, factor: int, width: int, height: int) -> Array:
     """The picture at a multiple of its size, by bilinear interpolation."""
     return bilinear(image, grid(width, height) / factor)
 
@@ -279,7 +279,7 @@ def streaks(
     light = shrunk(bright_light(image, threshold, knee, limit), factor, edge)
     arm_angles = [angle + 2.0 * np.pi * arm / arms for arm in range(arms)]
     star = sum(streak(light, arm_angle, length / factor, dispersion, edge) for arm_angle in arm_angles)
-    star = np.asarray(star) if factor == 1 else enlarged(np.asarray(star), factor, width, height)
+    star = np.asarray(star) if factor == 1 else enlarge(np.asarray(star), factor, width, height)
     glow = join(star[..., :3] / arms * rgb(tint), image[..., 3:])
     return join(image[..., :3] + intensity * glow[..., :3], image[..., 3:]), glow
 
@@ -319,7 +319,7 @@ def film_halation(
     for layer in range(3):
         channel = light[..., layer : layer + 1]
         mixture = halo_mixture(min(max(reach[layer], 0.5), 1.0))
-        layers.append(sum(share * blurred(channel, sigma * thickness, edge) for sigma, share in mixture))
+        layers.append(sum(share * blur_gaussian(channel, sigma * thickness, edge) for sigma, share in mixture))
     glow = join(amount * rgb(color) * np.maximum(np.concatenate(layers, axis=-1), 0.0), image[..., 3:])
     return join(image[..., :3] + glow[..., :3], image[..., 3:]), glow
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .blur import blurred
+from .blur import blur_gaussian
 from .matte import dilate_erode, screen_channel, screen_excess
 from .pixels import Array, join, rgb
 
@@ -32,7 +32,7 @@ def keyer(
     plate = rgb(screen)[None, None] if clean_plate is None else clean_plate[..., :3]
     seen = screen_excess(color, channel, balance) / np.maximum(screen_excess(plate, channel, balance), 1e-6)
     cover = np.clip((1.0 - seen - black) / np.maximum(np.subtract(white, black), 1e-6), 0.0, 1.0)
-    cover = blurred(dilate_erode(cover, -shrink, "circle", "clamp"), soften, "clamp")
+    cover = blur_gaussian(dilate_erode(cover, -shrink, "circle", "clamp"), soften, "clamp")
     cover = np.maximum(cover, np.clip(core, 0.0, 1.0)) * (1.0 - np.clip(garbage, 0.0, 1.0))
     subject = color - (1.0 - cover) * plate
     excess = spill * np.maximum(screen_excess(subject, channel, spill_balance), 0.0)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .blur import blurred
-from .pixels import Array, luminance_of, premultiplied, straight
+from .blur import blur_gaussian
+from .pixels import Array, luminance_of, premultiply_color, straight
 from .tone import natural_key
 
 
@@ -39,8 +39,10 @@ def local_tone_map(
     scaled = weight * np.minimum(light * middle / typical, 1e9)
 
     def mean_within(sigma: float) -> Array:
-        whole = blurred(weight, sigma, "clamp")
-        return np.where(whole > 1e-6, np.maximum(blurred(scaled, sigma, "clamp") / np.maximum(whole, 1e-6), 0.0), 0.0)
+        whole = blur_gaussian(weight, sigma, "clamp")
+        return np.where(
+            whole > 1e-6, np.maximum(blur_gaussian(scaled, sigma, "clamp") / np.maximum(whole, 1e-6), 0.0), 0.0
+        )
 
     inner, area, grows = mean_within(0.0), mean_within(0.0), np.ones(light.shape, bool)
     for step in range(-1, 8):  # the pixel alone, then the eight scales
@@ -54,4 +56,4 @@ def local_tone_map(
     light = np.maximum(luminance_of(bright), 1e-12)
     keyed = light * middle / typical
     shown = keyed * (1.0 + keyed / white**2) / (1.0 + area) * np.maximum(bright / light, 1e-12) ** saturation
-    return premultiplied(np.clip(shown, 0.0, 1.0) if clip else shown, alpha)
+    return premultiply_color(np.clip(shown, 0.0, 1.0) if clip else shown, alpha)

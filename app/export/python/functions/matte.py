@@ -7,7 +7,7 @@ from math import floor
 import numpy as np
 from scipy import ndimage
 
-from .blur import MODES, blurred
+from .blur import MODES, blur_gaussian
 from .pixels import Array, join, largest, length, luminance_of, mix, rgb, smallest, straight
 from .places import Edge
 
@@ -156,14 +156,14 @@ def map_range(
 def edge_matte(matte: Array, width: float, side: str, gain: float, edge: Edge) -> Array:
     """A matte of the edge of another one: 4 s (1 - s) of the blurred matte s."""
     m = np.clip(matte, 0.0, 1.0)
-    s = np.clip(blurred(matte, width / (2.0 * 1.617), edge), 0.0, 1.0)
+    s = np.clip(blur_gaussian(matte, width / (2.0 * 1.617), edge), 0.0, 1.0)
     part = {"inside": m, "outside": 1.0 - m}.get(side, 1.0)
     return np.minimum(4.0 * s * (1.0 - s) * part * gain, 1.0)
 
 
 def feather(image: Array, width: float, side: str, edge: Edge) -> Array:
     """Soften the edge of a matte on both sides, only inward, or only outward."""
-    soft = blurred(image, width / (4.0 if side == "both" else 2.0), edge)
+    soft = blur_gaussian(image, width / (4.0 if side == "both" else 2.0), edge)
     if side == "both":
         return soft
     inward = np.minimum(image, np.maximum(2.0 * soft - 1.0, 0.0))
@@ -174,7 +174,7 @@ def light_wrap(image: Array, background: Array, width: float, intensity: float, 
     """Let the light of a background shine around the edge of a subject: the subject with it, and the light alone."""
     cover = np.clip(image[..., 3:], 0.0, 1.0)
     beside = join(background[..., :3] * (1.0 - cover), np.zeros_like(cover))
-    light = intensity * cover * blurred(beside, 0.5 * width, edge)
+    light = intensity * cover * blur_gaussian(beside, 0.5 * width, edge)
     return image + light, light
 
 

@@ -137,7 +137,7 @@ def mix_images(a: Array, b: Array, factor: Array | float) -> Array:
     return mix(a, b, factor)
 
 
-def divided(a: Array | float, b: Array | float) -> Array:
+def divide(a: Array | float, b: Array | float) -> Array:
     """a / b, and 0 where b is 0."""
     divisor = np.asarray(b, np.float64)
     return np.where(divisor != 0.0, a / np.where(divisor != 0.0, divisor, 1.0), 0.0)
@@ -147,12 +147,12 @@ OPERATIONS = {
     "add": lambda a, b, c: a + b,
     "subtract": lambda a, b, c: a - b,
     "multiply": lambda a, b, c: a * b,
-    "divide": lambda a, b, c: divided(a, b),
+    "divide": lambda a, b, c: divide(a, b),
     "multiply add": lambda a, b, c: a * b + c,
     "power": lambda a, b, c: np.where(b == 0.0, 1.0, np.where(a > 0.0, np.maximum(a, 1e-37) ** b, 0.0)),
     "minimum": lambda a, b, c: np.minimum(a, b),
     "maximum": lambda a, b, c: np.maximum(a, b),
-    "modulo": lambda a, b, c: np.where(b != 0.0, a - b * np.floor(divided(a, b)), 0.0),
+    "modulo": lambda a, b, c: np.where(b != 0.0, a - b * np.floor(divide(a, b)), 0.0),
     "greater": lambda a, b, c: np.where(a > b, 1.0, 0.0),
     "less": lambda a, b, c: np.where(a < b, 1.0, 0.0),
     "absolute": lambda a, b, c: np.abs(a),
@@ -169,7 +169,7 @@ OPERATIONS = {
     "cosine": lambda a, b, c: np.cos(a),
     "arc tangent": lambda a, b, c: np.arctan2(a, b),
     "clamp": lambda a, b, c: np.maximum(np.minimum(a, c), b),
-    "remap": lambda a, b, c: divided(a - b, np.subtract(c, b)),
+    "remap": lambda a, b, c: divide(a - b, np.subtract(c, b)),
     "smoothstep": lambda a, b, c: np.where(np.equal(b, c), a >= b, smoothstep(b, np.where(b == c, b + 1.0, c), a)),
     "mix": lambda a, b, c: mix(a, b, c),
 }
@@ -189,20 +189,20 @@ def dot(a: Array, b: Array) -> Array:
 
 def project(a: Array, b: Array) -> Array:
     """The part of `a` along `b`."""
-    return b * divided(dot(a, b), dot(b, b))
+    return b * divide(dot(a, b), dot(b, b))
 
 
 VECTOR_OPERATIONS = {
     "add": lambda a, b, c, factor: a + b,
     "subtract": lambda a, b, c, factor: a - b,
     "multiply": lambda a, b, c, factor: a * b,
-    "divide": lambda a, b, c, factor: divided(a, b),
+    "divide": lambda a, b, c, factor: divide(a, b),
     "multiply add": lambda a, b, c, factor: a * b + c,
     "cross": lambda a, b, c, factor: np.cross(a, b),
     "project": lambda a, b, c, factor: project(a, b),
     "reflect": lambda a, b, c, factor: a - 2.0 * project(a, b),
     "scale": lambda a, b, c, factor: a * factor,
-    "normalize": lambda a, b, c, factor: divided(a, length(a)),
+    "normalize": lambda a, b, c, factor: divide(a, length(a)),
     "absolute": lambda a, b, c, factor: np.abs(a),
     "minimum": lambda a, b, c, factor: np.minimum(a, b),
     "maximum": lambda a, b, c, factor: np.maximum(a, b),

@@ -28,14 +28,14 @@ def vectors(x: Array, y: Array, z: Array) -> Array:
     return np.stack(np.broadcast_arrays(x, y, z), axis=-1)
 
 
-def limited_angle(projection: str, angle: float) -> float:
+def limit_angle(projection: str, angle: float) -> float:
     """The angle that a picture shows at most."""
     return min(angle, WIDEST_ANGLES.get(projection, 2.0 * np.pi))
 
 
 def quarters_of(projection: str, angle: float) -> float:
     """How many quarter turns lie in the height of a picture, at the scale of the middle of a perspective view."""
-    angle = limited_angle(projection, angle)
+    angle = limit_angle(projection, angle)
     if projection == "perspective":
         return 4.0 * np.tan(angle / 2.0) / np.pi
     return QUARTERS_HIGH.get(projection, angle / (np.pi / 2.0))
@@ -53,7 +53,7 @@ def panorama_size(
     return 2 * round(across / 2.0) or 1, 2 * round(down / 2.0) or 1
 
 
-def turned_view(yaw: float, pitch: float, roll: float) -> Array:
+def make_view_axes(yaw: float, pitch: float, roll: float) -> Array:
     """The matrix whose columns are the front, the left and the top of the view in the panorama."""
     cy, sy, cp, sp, cr, sr = (part(angle) for angle in (yaw, pitch, roll) for part in (np.cos, np.sin))
     front, left, top = np.array([cp * cy, -cp * sy, sp]), np.array([sy, cy, 0.0]), np.array([-sp * cy, sp * sy, cp])
@@ -217,8 +217,8 @@ def panorama(
 ) -> Array:
     """A panorama in another projection; a pixel that covers several is the mean of n x n samples."""
     width, height = panorama_size(image.shape[0], source, source_angle, target, angle, aspect, scale)
-    source_angle, angle = limited_angle(source, source_angle), limited_angle(target, angle)
-    turn, size, own_size = turned_view(yaw, pitch, roll), np.array([width, height]), np.array(image.shape[1::-1])
+    source_angle, angle = limit_angle(source, source_angle), limit_angle(target, angle)
+    turn, size, own_size = make_view_axes(yaw, pitch, roll), np.array([width, height]), np.array(image.shape[1::-1])
     at, x, y = grid(width, height), np.array([0.25, 0.0]), np.array([0.0, 0.25])
     spans = [
         length(way_in_picture(at + part, size, target, angle) - way_in_picture(at - part, size, target, angle))[..., 0]

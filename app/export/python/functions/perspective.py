@@ -17,7 +17,7 @@ def map_square(corners: list[tuple[float, float]]) -> Array:
     return np.vstack([np.stack([b - a + g * b, d - a + h * d, a], axis=1), [g, h, 1.0]])
 
 
-def filtered(image: Array, places: Array, kernel: str, edge: str) -> Array:
+def sample_filtered(image: Array, places: Array, kernel: str, edge: str) -> Array:
     """The picture at places [n, 2] between its pixels."""
     if kernel == "nearest":
         at = np.floor(places).astype(int)
@@ -66,7 +66,7 @@ def corner_pin(
         for i in range(n * n):
             offset = (np.array([i % n, i // n]) + 0.5) / n - 0.5
             place, near = source(at[here] + offset)
-            result[here] += np.where(near > 1e-9, filtered(image, place, kernel, edge), 0.0) / (n * n)
+            result[here] += np.where(near > 1e-9, sample_filtered(image, place, kernel, edge), 0.0) / (n * n)
     return result
 
 
@@ -86,7 +86,7 @@ def bent(p: Array, radial: tuple[float, float, float], tangential: tuple[float, 
     return place, across, rise * x * y + 2.0 * (x * p1 + y * p2), down
 
 
-def straightened(seen: Array, radial: tuple[float, float, float], tangential: tuple[float, float]) -> Array:
+def straighten_rays(seen: Array, radial: tuple[float, float, float], tangential: tuple[float, float]) -> Array:
     """The inverse, by Newton's method from the center outward; far away where there is none."""
     p, lost = np.zeros_like(seen), np.zeros(seen[..., :1].shape, bool)
     for i in range(8):
@@ -119,16 +119,16 @@ def lens_distortion(
     height, width = image.shape[:2]
     middle, radial, tangential = np.asarray(center) * (width, height), (k1, k2, k3), (p1, p2)
 
-    def seen(at: Array) -> Array:
+    def find_ray(at: Array) -> Array:
         p = (at - middle) / (focal * zoom)
-        return straightened(p, radial, tangential) if direction == "distort" else p
+        return straighten_rays(p, radial, tangential) if direction == "distort" else p
 
     def source(at: Array) -> Array:
-        p = seen(at)
+        p = find_ray(at)
         return middle + focal * (p if direction == "distort" else bent(p, radial, tangential)[0])
 
     at = grid(width, height)
-    _, a, b, c = bent(seen(at), radial, tangential)
+    _, a, b, c = bent(find_ray(at), radial, tangential)
     if direction == "distort":  # the derivative of the inverse
         area = a * c - b * b
         a, b, c = c / area, -b / area, a / area
@@ -139,5 +139,5 @@ def lens_distortion(
         here = counts == n
         for i in range(n * n):
             offset = (np.array([i % n, i // n]) + 0.5) / n - 0.5
-            result[here] += filtered(image, source(at[here] + offset), kernel, edge) / (n * n)
+            result[here] += sample_filtered(image, source(at[here] + offset), kernel, edge) / (n * n)
     return result

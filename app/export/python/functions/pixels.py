@@ -23,7 +23,7 @@ def straight(image: Array) -> tuple[Array, Array]:
     return np.where(alpha > 1e-6, color / np.maximum(alpha, 1e-6), color), alpha
 
 
-def premultiplied(color: Array, alpha: Array) -> Array:
+def premultiply_color(color: Array, alpha: Array) -> Array:
     """The Image of a straight color: the inverse of `straight`."""
     return join(np.where(alpha > 1e-6, color * alpha, color), alpha)
 
@@ -84,13 +84,13 @@ def display_tone(image: Array) -> Array:
 def display_tones(image: Array) -> Array:
     """The Image with sRGB codes in place of light."""
     color, alpha = straight(image)
-    return premultiplied(srgb_encode(color), alpha)
+    return premultiply_color(srgb_encode(color), alpha)
 
 
 def light_of_tones(tones: Array) -> Array:
     """The inverse of `display_tones`."""
     code, alpha = straight(tones)
-    return premultiplied(srgb_decode(code), alpha)
+    return premultiply_color(srgb_decode(code), alpha)
 
 
 def as_image(field: Array) -> Array:
@@ -98,7 +98,7 @@ def as_image(field: Array) -> Array:
     return join(field, np.ones_like(field))
 
 
-def masked(before: Array, after: Array, mask: Array | float, mix: Array | float, inverted: bool = False) -> Array:
+def mix_by_mask(before: Array, after: Array, mask: Array | float, mix: Array | float, inverted: bool = False) -> Array:
     """`after` where the mask is 1, `before` where it is 0."""
     inside = np.clip(mask, 0.0, 1.0)
     part = np.clip(mix, 0.0, 1.0) * (1.0 - inside if inverted else inside)

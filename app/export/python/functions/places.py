@@ -43,7 +43,7 @@ def pixels_at(image: Array, x: Array, y: Array, edge: str = "clamp") -> Array:
     return np.where(inside[..., None], read, 0.0)
 
 
-def extended(image: Array, before: int, after: int, edge: str) -> Array:
+def extend(image: Array, before: int, after: int, edge: str) -> Array:
     """The picture with more pixels on the left and above, and on the right and below."""
     height, width = image.shape[:2]
     rows = fold(np.arange(-before, height + after), height, edge)
@@ -51,7 +51,7 @@ def extended(image: Array, before: int, after: int, edge: str) -> Array:
     return image[np.ix_(rows, columns)]
 
 
-def shifted(image: Array, right: int, down: int, edge: str = "clamp") -> Array:
+def shift_picture(image: Array, right: int, down: int, edge: str = "clamp") -> Array:
     """For every pixel, the one that lies so many pixels to the right and down."""
     height, width = image.shape[:2]
     y, x = np.mgrid[:height, :width]

@@ -8,8 +8,8 @@ from typing import Literal
 import numpy as np
 
 from .hashing import pcg3d, unit
-from .pixels import Array, join, largest, length, luminance_of, mix, premultiplied, rgb, straight
-from .places import shifted
+from .pixels import Array, join, largest, length, luminance_of, mix, premultiply_color, rgb, straight
+from .places import shift_picture
 from .tone import with_hue
 
 FAR = 1e9  # larger depths are background, which renderers write as 1e10 or infinity
@@ -39,7 +39,7 @@ def depth_merge(a: Array, a_depth: Array, b: Array, b_depth: Array, antialias: b
     if antialias:
         slopes = []
         for right, down in ((1, 0), (0, 1)):  # on the side that shows the same two surfaces
-            ahead, behind = shifted(lead, right, down) - lead, lead - shifted(lead, -right, -down)
+            ahead, behind = shift_picture(lead, right, down) - lead, lead - shift_picture(lead, -right, -down)
             slopes.append(np.where(np.abs(ahead) < np.abs(behind), ahead, behind))
         share = positive_share(lead, (slopes[0], slopes[1]))
     else:
@@ -111,7 +111,7 @@ def material_from_colors(
         emitted, _ = straight(join(emission[..., :3], beauty[..., 3:]))
         albedo, metal = material_from_light(matte, light, emitted, reflectance)
     rough = np.clip(roughness + roughen - metal * polish, 0.0, 1.0)
-    return premultiplied(albedo, alpha), np.concatenate([metal, rough], axis=-1)
+    return premultiply_color(albedo, alpha), np.concatenate([metal, rough], axis=-1)
 
 
 def rebuild_beauty(
@@ -166,8 +166,8 @@ def facing(normal: Array) -> Array:
     unit = unit_normals(normal)
     here, clear = np.clip(unit[..., 2:], 0.0, 1.0), (length(normal) >= 0.98) * 1.0
     around = [(right, down) for down in (-1, 0, 1) for right in (-1, 0, 1)]
-    total = np.sum([shifted(clear * here, *step) for step in around], axis=0)
-    count = np.sum([shifted(clear, *step) for step in around], axis=0)
+    total = np.sum([shift_picture(clear * here, *step) for step in around], axis=0)
+    count = np.sum([shift_picture(clear, *step) for step in around], axis=0)
     mean = np.where((clear > 0.0) | (count == 0.0), here, total / np.maximum(count, 1.0))
     return np.where(length(unit) > 0.0, mean, 0.0)
 

@@ -7,20 +7,22 @@ from collections.abc import Callable
 import numpy as np
 
 from .pixels import Array, display_tone, srgb_encode, straight
-from .places import shifted
+from .places import shift_picture
 
 SEARCH_LENGTHS = {"low": (8, 0), "medium": (16, 0), "high": (32, 8), "ultra": (64, 16)}
 """How many pixels the ends of an edge are searched along rows and columns, and along diagonals."""
 
 
-def found_edges(tones: Array, threshold: float, contrast: float) -> Array:
+def find_steps(tones: Array, threshold: float, contrast: float) -> Array:
     """Whether there is an edge at the left (0) and at the top (1) of each pixel.
 
     The step of tone there is above the threshold, and no step nearby is `contrast` times as large.
     """
     ways = [(1, 0), (0, 1)]
     far = {
-        (x, y, n): np.abs(shifted(tones, n * x, n * y) - shifted(tones, (n + 1) * x, (n + 1) * y)).max(axis=-1)
+        (x, y, n): np.abs(shift_picture(tones, n * x, n * y) - shift_picture(tones, (n + 1) * x, (n + 1) * y)).max(
+            axis=-1
+        )
         for x, y in ways
         for n in (-2, -1, 0)
     }
@@ -189,13 +191,13 @@ def smaa(
     if detection == "luminance":
         tones = display_tone(image)
     reach, diagonal = SEARCH_LENGTHS[quality]
-    weights = slant_weights(found_edges(tones, threshold, contrast), reach, diagonal, corner_rounding)
-    left, right = weights[..., 2:3], shifted(weights, 1, 0, "black")[..., 3:4]
-    top, below = weights[..., 0:1], shifted(weights, 0, 1, "black")[..., 1:2]
+    weights = slant_weights(find_steps(tones, threshold, contrast), reach, diagonal, corner_rounding)
+    left, right = weights[..., 2:3], shift_picture(weights, 1, 0, "black")[..., 3:4]
+    top, below = weights[..., 0:1], shift_picture(weights, 0, 1, "black")[..., 1:2]
     is_level = np.maximum(left, right) > np.maximum(top, below)
     first, last = np.where(is_level, left, top), np.where(is_level, right, below)
     total = first + last
     share = total / np.where(total > 0.0, total, 1.0) / np.where(total > 0.0, total, 1.0)
-    before = np.where(is_level, shifted(image, -1, 0, "black"), shifted(image, 0, -1, "black"))
-    after = np.where(is_level, shifted(image, 1, 0, "black"), shifted(image, 0, 1, "black"))
+    before = np.where(is_level, shift_picture(image, -1, 0, "black"), shift_picture(image, 0, -1, "black"))
+    after = np.where(is_level, shift_picture(image, 1, 0, "black"), shift_picture(image, 0, 1, "black"))
     return image + share * (first * first * (before - image) + last * last * (after - image))

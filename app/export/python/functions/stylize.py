@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import ndimage
 
-from .blur import blurred
+from .blur import blur_gaussian
 from .hashing import hash3, normal3, stream_of
 from .pixels import (
     Array,
@@ -16,13 +16,13 @@ from .pixels import (
     light_of_tones,
     luminance_of,
     mix,
-    premultiplied,
+    premultiply_color,
     smallest,
     srgb_decode,
     srgb_encode,
     straight,
 )
-from .places import Edge, bilinear, grid, shifted
+from .places import Edge, bilinear, grid, shift_picture
 
 
 def grain_clumps(places: Array, stream: Array) -> Array:
@@ -67,7 +67,7 @@ def film_grain(
     tone = shadows * rest**2 + 2.0 * np.asarray(midtones) * rest * developed + highlights * developed**2
     response = 2.0 * np.sqrt(rest * developed) * tone  # 1 at middle gray
     spread = np.log(2.0) * amount * (size / np.hypot(size, 0.55)) * response
-    return premultiplied(film * np.exp(spread * grain - 0.5 * spread**2), alpha)
+    return premultiply_color(film * np.exp(spread * grain - 0.5 * spread**2), alpha)
 
 
 def tv_snow(
@@ -102,7 +102,7 @@ def tv_snow(
     snow = np.clip(0.5 + contrast * (flakes * fine + level * np.sqrt(fine) * lines), 0.0, 1.0)
     code = srgb_encode(picture)
     code = mix(code, snow, amount) if mode == "mix" else code * (1.0 + amount * (2.0 * snow - 1.0))
-    return premultiplied(srgb_decode(code), alpha)
+    return premultiply_color(srgb_decode(code), alpha)
 
 
 def nine_places(width: int, height: int) -> list[Array]:
@@ -273,7 +273,7 @@ def structure(picture: Array, edge: str) -> Array:
     """The structure tensor xx, xy, yy of the Sobel gradient, summed over all channels (Förstner and Gülch 1987)."""
 
     def difference(x: int, y: int) -> Array:
-        return shifted(picture, x, y, edge) - shifted(picture, -x, -y, edge)
+        return shift_picture(picture, x, y, edge) - shift_picture(picture, -x, -y, edge)
 
     falling, rising = difference(1, 1), difference(1, -1)
     across = (2.0 * difference(1, 0) + falling + rising) / 4.0
@@ -288,7 +288,9 @@ def kuwahara_classic(tones: Array, radius: int, edge: str) -> Array:
         total, squares = np.zeros_like(tones), np.zeros_like(tones[..., :1])
         for y in range(radius + 1):
             for x in range(radius + 1):
-                other = shifted(tones, x - radius * (1 - (quadrant & 1)), y - radius * (1 - (quadrant >> 1)), edge)
+                other = shift_picture(
+                    tones, x - radius * (1 - (quadrant & 1)), y - radius * (1 - (quadrant >> 1)), edge
+                )
                 total += other - tones
                 squares += ((other - tones)[..., :3] ** 2).sum(axis=-1, keepdims=True)
         mean = total / (radius + 1) ** 2
@@ -327,7 +329,7 @@ def kuwahara_sectors(tones: Array, tensor: Array, radius: float, sharpness: floa
                 shares.append(np.maximum(a + zeta - eta * b * b, 0.0) ** 2)
             whole = sum(shares)
             weight = np.where(square <= 1.0, np.exp(-3.125 * square) / np.where(whole > 0.0, whole, 1.0), 0.0)
-            other = shifted(tones, x, y, edge) - tones
+            other = shift_picture(tones, x, y, edge) - tones
             for k, share in enumerate(shares):
                 sums[k] += weight * share * other
                 squares[k] += weight * share * (other[..., :3] ** 2).sum(axis=-1, keepdims=True)
@@ -346,5 +348,5 @@ def kuwahara(image: Array, kind: str, radius: float, sharpness: float, smoothing
     tones = display_tones(image)
     if kind == "classic":
         return light_of_tones(kuwahara_classic(tones, int(np.ceil(radius - 0.5)), edge))
-    tensor = blurred(structure(tones[..., :3], edge), smoothing, edge)
+    tensor = blur_gaussian(structure(tones[..., :3], edge), smoothing, edge)
     return light_of_tones(kuwahara_sectors(tones, tensor, radius, sharpness, kind == "anisotropic", edge))

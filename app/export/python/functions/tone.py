@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .color import curve_at
-from .pixels import Array, join, largest, luminance_of, mix, premultiplied, smallest, smoothstep, straight
+from .pixels import Array, join, largest, luminance_of, mix, premultiply_color, smallest, smoothstep, straight
 
 
 def hue_of(color: Array) -> Array:
@@ -194,7 +194,7 @@ def tone_map(
             key = natural_key(average * nits)
         ratios = np.maximum(color / light, 1e-12) ** saturation
         shown = tone_luminance(operator, light, key, average, maximum, bias, q, k) * ratios
-    return premultiplied(np.clip(shown, 0.0, 1.0) if clip else shown, alpha)
+    return premultiply_color(np.clip(shown, 0.0, 1.0) if clip else shown, alpha)
 
 
 def cone_response(kelvin: Array | float, tint: Array | float, to_cones: Array) -> Array:
@@ -267,7 +267,7 @@ def from_oklab(lab: Array) -> Array:
     return (lab @ np.linalg.inv(TO_LAB).T) ** 3 @ np.linalg.inv(TO_CONES).T
 
 
-def turned(lab: Array, angle: Array | float, factor: Array | float) -> Array:
+def rotate_hue(lab: Array, angle: Array | float, factor: Array | float) -> Array:
     """OKLab with the hue rotated by `angle` radians and the chroma scaled."""
     lightness, a, b = lab[..., 0:1], lab[..., 1:2], lab[..., 2:3]
     cos, sin = np.cos(angle), np.sin(angle)
@@ -280,7 +280,7 @@ def hue_saturation(
     """Rotate hues and scale colors: in OKLab, around the gray axis (Haeberli 1993), or as HSV (Smith 1978)."""
     color = image[..., :3]
     if mode == "perceptual":
-        changed = from_oklab(turned(to_oklab(color), hue, saturation))
+        changed = from_oklab(rotate_hue(to_oklab(color), hue, saturation))
     elif mode == "luminance":  # Rodrigues' rotation around the gray axis, then gray so that the luminance stays
         gray = np.full(3, np.sqrt(1.0 / 3.0))
         along = gray * (color * gray).sum(axis=-1, keepdims=True)
@@ -312,7 +312,7 @@ def hue_curves(
     factor = mix(1.0, curve_at(saturation_by_hue, hue), saturation)
     factor = factor * curve_at(saturation_by_saturation, saturation)
     light = mix(1.0, curve_at(light_by_hue, hue), saturation)
-    return join(light * from_oklab(turned(to_oklab(image[..., :3]), angle, factor)), image[..., 3:])
+    return join(light * from_oklab(rotate_hue(to_oklab(image[..., :3]), angle, factor)), image[..., 3:])
 
 
 def over_exposure(
@@ -329,7 +329,7 @@ def over_exposure(
     lost = bleach * (peak - held) / white
     fade = lost / (1.0 + lost)
     shown = (1.0 - fade) * color * (held / safe) + fade * held
-    return premultiplied(np.where(peak <= start, color, shown), alpha)
+    return premultiply_color(np.where(peak <= start, color, shown), alpha)
 
 
 def photoreceptor_tone_map(
@@ -361,4 +361,4 @@ def photoreceptor_tone_map(
         low, high = seen.min(), seen.max()
         if high - low > 1e-6:
             shown = np.clip((shown - low) / (high - low), 0.0, 1.0)
-    return premultiplied(shown, alpha)
+    return premultiply_color(shown, alpha)

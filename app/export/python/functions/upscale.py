@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .pixels import Array, join, largest, smallest
-from .places import Edge, grid, pixels_at, shifted
+from .places import Edge, grid, pixels_at, shift_picture
 
 
 def fsr_codes(image: Array, light: str) -> Array:
@@ -66,7 +66,7 @@ def fsr_enlarged(codes: Array, width: int, height: int, edge: str) -> Array:
 def fsr_sharpened(codes: Array, sharpness: Array | float, light: str, edge: str) -> Array:
     """RCAS: subtracts as much of the four neighbors as leaves the result within 0..1."""
     here = codes[..., :3]
-    around = [shifted(codes, *step, edge)[..., :3] for step in ((0, -1), (-1, 0), (1, 0), (0, 1))]
+    around = [shift_picture(codes, *step, edge)[..., :3] for step in ((0, -1), (-1, 0), (1, 0), (0, 1))]
     least, most = np.min(around, axis=0), np.max(around, axis=0)
     to_black = least / np.maximum(4.0 * most, 1e-9)
     to_white = (1.0 - most) / np.maximum(4.0 - 4.0 * least, 1e-9)
