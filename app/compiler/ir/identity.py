@@ -57,8 +57,9 @@ def _make_describer(kind: type[Struct]) -> Callable[[Any], object]:
 
     A large graph has thousands of parameters to describe each time it is planned. So all fields are taken at once, and
     only those are looked at that hold floats or other values: text and whole numbers stay as they are. Most floats have
-    their default; to say None for it is faster than to write the number. The types are read as they are spelled: to
-    evaluate them takes 5 % of a short render. What is not recognized is described by its value, which gives the same.
+    their default: None says it, and less is to be written; where all the last ones have it, they are left out. The types
+    are read as they are spelled: to evaluate them takes 5 % of a short render. What is not recognized is described by
+    its value, which gives the same.
     """
     names, identity, spelled = kind.__struct_fields__, identity_fields(kind), _spell_types(kind)
     defaults = dict(zip(reversed(names), reversed(kind.__struct_defaults__), strict=False))
@@ -71,12 +72,19 @@ def _make_describer(kind: type[Struct]) -> Callable[[Any], object]:
             floats.append((place, defaults.get(name)))
         elif name in identity and not words <= _PLAIN_WORDS:
             rest.append((place, _describe_floats if spelled[name] == "tuple[float, ...]" else describe))
+    last = len(names)
+    while last and spelled[names[last - 1]] == "float" and names[last - 1] in defaults.keys() & set(identity):
+        last -= 1
+    last_defaults = tuple(defaults[name] for name in names[last:])
+    first_floats = [(place, default) for place, default in floats if place < last]
 
     def describe_fields(item: Struct) -> object:
-        parts: list[Any] = [kind.__name__, *structs.astuple(item)]
+        fields = structs.astuple(item)
+        usual = fields[last:] == last_defaults
+        parts: list[Any] = [kind.__name__, *(fields[:last] if usual else fields)]
         for place in excluded:
             parts[place + 1] = None
-        for place, default in floats:
+        for place, default in first_floats if usual else floats:
             number = parts[place + 1]
             parts[place + 1] = None if number == default else number + 0.0
         for place, describe_value in rest:

@@ -133,9 +133,13 @@ class FunctionOp(Op, frozen=True):
     @property
     def uniform_floats(self) -> int:
         """Each constant is rounded up to four floats, and every output has a seam."""
-        constants = [item.operand for item in self.parameters if isinstance(item.operand, UniformConstant)]
-        factors = sum(item.factor != 1.0 for item in self.parameters)
-        return sum(_count_padded_floats(item) for item in constants) + 4 * (factors + len(self.shapes))
+        floats = 4 * len(self.shapes)
+        for parameter in self.parameters:
+            if isinstance(parameter.operand, UniformConstant):
+                floats += _count_padded_floats(parameter.operand)
+            if parameter.factor != 1.0:
+                floats += 4
+        return floats
 
     def without_numbers(self) -> FunctionOp:
         return replace(self, parameters=_blank_parameters(self.parameters))
@@ -369,7 +373,8 @@ def _find_blocks(span: Span, length: int) -> Span:
 
 def _count_padded_floats(item: UniformConstant) -> int:
     """Floats with the padding of std140, where each column of a mat3 takes four."""
-    return 12 if item.channels == 9 else -(-item.channels // 4) * 4
+    channels = item.channels
+    return 4 if channels <= 4 else 12 if channels == 9 else -(-channels // 4) * 4
 
 
 def _blank_parameters(parameters: tuple[Parameter, ...]) -> tuple[Parameter, ...]:

@@ -134,10 +134,10 @@ class NodeLowering:
         feeds = self._context.frames.find_feeds((path, frame))
         for name, socket in node.inputs.items():
             source, frames = feeds.get(name, (None, ()))
-            as_field = takes_field(socket) or name == narrow
-            by_frame = {
-                at: operand for at in frames if source and (operand := operand_at(source, at, as_field)) is not None
-            }
+            by_frame: dict[int, Operand] = {}
+            if source is not None:
+                as_field = takes_field(socket) or name == narrow
+                by_frame = {at: item for at in frames if (item := operand_at(source, at, as_field)) is not None}
             if by_frame:
                 inputs.inputs[name] = by_frame[frame] if frame in by_frame else next(iter(by_frame.values()))
                 inputs.at_frames.update({(name, at): operand for at, operand in by_frame.items()})
@@ -152,11 +152,12 @@ class NodeLowering:
             else:
                 noun = socket.kind.facts.noun
                 raise GraphError(f"node '{path}': input '{name}' is not linked: link a {noun} to it")
-        for name, value in node.values.items():
-            source, _ = feeds.get(name, (None, ()))
-            operand = operand_at(source, frame, value.type != "color") if source is not None else None
-            if operand is not None:
-                inputs.wires[name] = operand
+        if not feeds.keys() <= node.inputs.keys():
+            for name, value in node.values.items():
+                source, _ = feeds.get(name, (None, ()))
+                operand = operand_at(source, frame, value.type != "color") if source is not None else None
+                if operand is not None:
+                    inputs.wires[name] = operand
         return inputs
 
     def _fit_all(self, inputs: NodeInputs, size: Size) -> None:
