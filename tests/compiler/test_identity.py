@@ -38,6 +38,7 @@ from halation.compiler.ir import (
     StoredResult,
     UniformConstant,
 )
+from halation.compiler.ir.identity import hash_description
 from halation.compiler.scheduling.fingerprints import PassFingerprints, find_keys
 from halation.glsl import parse
 from halation.nodes import HostProgram, Kind, ShaderStage, ShaderText
@@ -178,3 +179,12 @@ def test_equal_numbers_have_one_key():
     still = SPECIMENS[Placement]
     turned = replace(still, matrix=tuple(-0.0 if number == 0.0 else number for number in still.matrix))
     assert turned == still and key(turned) == key(still)
+
+
+@pytest.mark.parametrize(
+    ("first", "second"), [("\udce9.exr", "\udcea.exr"), (1 << 70, 1 << 71), (1, 1.0), (0.0, False)]
+)
+def test_values_that_differ_have_other_hashes(first: object, second: object) -> None:
+    """Also file names that are not UTF-8, and whole numbers that MessagePack cannot write."""
+    assert hash_description(["Read", first]) != hash_description(["Read", second])
+    assert hash_description(["Read", first]) == hash_description(["Read", first])

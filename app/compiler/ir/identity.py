@@ -19,18 +19,20 @@ from inspect import get_annotations
 from typing import Any
 
 from msgspec import Struct, structs
+from msgspec.msgpack import Encoder
 
 from ...resources.record import Record
 from .values import Ref, UniformConstant
 
 _PLAIN = frozenset({str, int, bool, type(None)})
 _PLAIN_WORDS = frozenset({"int", "str", "bool", "None", "Size", "Edge", "..."})
+_ENCODER = Encoder()
 _ADD_ZERO = (0.0).__add__
 """Leaves one zero of two: operations that are equal must have one key, and 0.0 == -0.0."""
 
 
 def describe(item: object) -> object:
-    """Everything about an operation, or a value in one, that can change a pixel: nested tuples with a plain repr.
+    """Everything about an operation, or a value in one, that can change a pixel: nested lists and tuples of plain values.
 
     Values that are equal have one description: 1 and 1.0 as constants, 0.0 and -0.0 anywhere.
     """
@@ -49,7 +51,7 @@ def _find_describer(kind: type[Any]) -> Callable[[Any], object]:
         return _describe_constant
     if kind not in _PLAIN and issubclass(kind, Struct):
         return _make_describer(kind)
-    return lambda item: item
+    return (lambda item: item) if kind in _PLAIN else repr
 
 
 def _make_describer(kind: type[Struct]) -> Callable[[Any], object]:
@@ -118,6 +120,19 @@ def identity_fields(kind: type[Struct]) -> tuple[str, ...]:
     return tuple(name for name in kind.__struct_fields__ if name not in excluded and name not in uncompared)
 
 
+def hash_description(description: object) -> str:
+    """A hash of what `describe` returns, alone or in lists. MessagePack writes it ten times as fast as `repr`."""
+    try:
+        content = _ENCODER.encode(description)
+    except (OverflowError, UnicodeEncodeError):  # a whole number of 65 bits, or a file name that is not UTF-8
+        content = repr(description).encode()
+    return _hash(content)
+
+
 def hash_parts(*parts: object) -> str:
     """A hash of the texts of some values."""
-    return blake2b("\0".join(str(part) for part in parts).encode(), digest_size=16).hexdigest()
+    return _hash("\0".join(str(part) for part in parts).encode())
+
+
+def _hash(content: bytes) -> str:
+    return blake2b(content, digest_size=16).hexdigest()

@@ -20,7 +20,7 @@ from types import MappingProxyType
 from ..fusion.fuse import PassGroup
 from ..fusion.rewrites import split_by_result
 from ..ir import LoweredProgram, Op, Ref, SourceOp
-from ..ir.identity import hash_parts
+from ..ir.identity import hash_description, hash_parts
 from ..library import Library
 from ..target import Target
 
@@ -47,7 +47,7 @@ class PassFingerprints:
         self._target = target
         self._uniforms = {"proxy": program.scale, "frame": program.frame}
         self.descriptions = dict(known)
-        """All that decides what an operation makes, but the pictures that it reads, by its number."""
+        """A hash of all that decides what an operation makes, but the pictures that it reads, by its number."""
 
     def of(self, group: PassGroup) -> tuple[Fingerprint, ...]:
         """The fingerprint of each result of a pass, as if the pass made nothing else."""
@@ -85,7 +85,7 @@ class PassFingerprints:
         if index not in self.descriptions:
             files = self._library.digest(op.files, op.owner) if op.files else ""
             uniforms = [self._uniforms[name] for name in sorted(op.find_uniforms(self._library))]
-            self.descriptions[index] = repr((op.identity, files, uniforms))
+            self.descriptions[index] = hash_description((op.identity, files, uniforms))
         return self.descriptions[index]
 
 
