@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from functools import cache, cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from . import _declare
 from ._declare import *  # noqa: F403  (the vocabulary: `_declare.__all__` names it)
@@ -18,6 +19,9 @@ from ._plugins import (
     plugins,
     refuse_double_ids,
 )
+
+if TYPE_CHECKING:
+    from ._declare.item_kinds import *  # noqa: F403
 
 __all__ = [
     "NodeImportError",
@@ -114,3 +118,8 @@ def reload_catalogue() -> Mapping[str, type[Node]]:
     catalogue.cache_clear()
     dict(built_in_nodes())
     return catalogue()
+
+
+def __getattr__(name: str) -> Any:
+    """What `_declare` loads when it is asked for: kinds of named items."""
+    return getattr(_declare, name)

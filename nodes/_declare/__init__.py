@@ -20,8 +20,10 @@ Values reach `passes` and GLSL in working units (see `Slider.unit`), so no node 
 
 from __future__ import annotations
 
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from .camera import CameraModel, look_at, orbit_camera
-from .curve_pairs import CurvePair, CurvePairSet, curve_pairs_of, name_curve_pairs
 from .curves import MAX_POINTS, curve_at, curve_knots, ramp_at, ramp_knots
 from .draw import Affine, Argument, Draw, Drawn, Kernel, Overlap, Pixels, Reach, Resampling, ShaderStage, ShaderText
 from .host import HostProgram
@@ -52,49 +54,12 @@ from .lettering import (
     Typeface,
     TypesetText,
 )
-from .light_groups import LightGroup, LightGroupSet, light_groups_of, name_light_groups
-from .lights import (
-    LIGHTS,
-    MAX_LIGHTS,
-    Light,
-    LightKind,
-    LightSet,
-    item_of,
-    light_of,
-    lights_of,
-    name_lights,
-    number_lights,
-)
 from .masking import INVERT_MASK, MASK, MASKED, MIX
 from .mattes import float_bits, format_names, matte_of, murmur3, pick_ids, pick_names, toggle_name
 from .node import Filter, Node, Pointwise, Reader, Source, Temporal
 from .outlines import OutlineFill, OutlinePlace
-from .paint_strokes import (
-    MAX_STROKES,
-    PAINT_STROKES,
-    PaintStroke,
-    PaintStrokeSet,
-    PaintTool,
-    name_paint_strokes,
-    paint_strokes_of,
-    simplify_stroke,
-)
 from .recolor import WORKING_SPACE, ColorChange, ColorSettings, LookupFile, SpaceChange
 from .render import Matte, Meaning, Render
-from .roto_shapes import (
-    MAX_ROTO_SHAPES,
-    ROTO_SHAPES,
-    PlacedRotoShape,
-    RotoMode,
-    RotoShape,
-    RotoShapeSet,
-    RotoTrack,
-    RotoTransform,
-    make_ellipse,
-    name_roto_shapes,
-    place_roto_shapes,
-    roto_shapes_of,
-)
 from .rows import ROWS, SPLINE_ROWS, STROKE_ROWS, Row, RowLayout
 from .scene import BuiltInScene, Motion, Scene, SceneFile, StageName
 from .sockets import CameraSocket, Color, Edge, Field, Image, Number, OutputSocket, Size, Socket, Vector, glsl_type
@@ -154,23 +119,20 @@ from .values import (
     Wheel,
 )
 
+if TYPE_CHECKING:
+    from .item_kinds import *  # noqa: F403  (`item_kinds.__all__` names them)
+
 __all__ = [
     "INVERT_MASK",
     "KINDS",
-    "LIGHTS",
     "MASK",
     "MASKED",
-    "MAX_LIGHTS",
     "MAX_POINTS",
     "MAX_REFERENCE_HEIGHT",
-    "MAX_ROTO_SHAPES",
-    "MAX_STROKES",
     "MAX_TEXT",
     "MIX",
-    "PAINT_STROKES",
     "REFERENCE_HEIGHT",
     "RGBA",
-    "ROTO_SHAPES",
     "ROWS",
     "SPLINE_ROWS",
     "STROKE_ROWS",
@@ -188,8 +150,6 @@ __all__ = [
     "CubicCurve",
     "Curve",
     "Curve4",
-    "CurvePair",
-    "CurvePairSet",
     "Dial",
     "Doc",
     "Draw",
@@ -214,11 +174,6 @@ __all__ = [
     "Kind",
     "KindFacts",
     "LengthUnits",
-    "Light",
-    "LightGroup",
-    "LightGroupSet",
-    "LightKind",
-    "LightSet",
     "LookupFile",
     "Matte",
     "Meaning",
@@ -234,15 +189,11 @@ __all__ = [
     "OutlinePlace",
     "OutputSocket",
     "Overlap",
-    "PaintStroke",
-    "PaintStrokeSet",
-    "PaintTool",
     "PatternLoop",
     "PatternOffset",
     "PatternPeriod",
     "Picks",
     "Pixels",
-    "PlacedRotoShape",
     "Plain",
     "Points",
     "Pointwise",
@@ -254,11 +205,6 @@ __all__ = [
     "Render",
     "RenderPath",
     "Resampling",
-    "RotoMode",
-    "RotoShape",
-    "RotoShapeSet",
-    "RotoTrack",
-    "RotoTransform",
     "Row",
     "RowLayout",
     "Scalar",
@@ -296,45 +242,29 @@ __all__ = [
     "convert_length",
     "curve_at",
     "curve_knots",
-    "curve_pairs_of",
     "curve_point",
     "float_bits",
     "format_names",
     "glsl_type",
     "insert_point",
     "is_length",
-    "item_of",
     "join_points",
     "length_unit_fault",
-    "light_groups_of",
-    "light_of",
-    "lights_of",
     "list_curves",
     "list_rows",
     "look_at",
-    "make_ellipse",
     "matte_of",
     "murmur3",
-    "name_curve_pairs",
-    "name_light_groups",
-    "name_lights",
-    "name_paint_strokes",
     "name_reference",
-    "name_roto_shapes",
     "natural_order",
-    "number_lights",
     "orbit_camera",
-    "paint_strokes_of",
     "pick_ids",
     "pick_names",
-    "place_roto_shapes",
     "ramp_at",
     "ramp_knots",
     "read_reference",
     "read_rows",
     "resolve_length_unit",
-    "roto_shapes_of",
-    "simplify_stroke",
     "space_pixels",
     "split_curve",
     "split_points",
@@ -342,3 +272,12 @@ __all__ = [
     "trace_spline",
     "unit_factor",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Kinds of named items are loaded when the first of them is asked for, since few graphs have any."""
+    if not name.startswith("__"):
+        kinds = import_module(".item_kinds", __name__)
+        if name in kinds.__all__:
+            return getattr(kinds, name)
+    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")

@@ -32,7 +32,7 @@ _ADD_ZERO = (0.0).__add__
 
 
 def describe(item: object) -> object:
-    """Everything about an operation, or a value in one, that can change a pixel: nested lists and tuples of plain values.
+    """Everything about an operation, or a value in one, that can change a pixel: lists and tuples of plain values.
 
     Values that are equal have one description: 1 and 1.0 as constants, 0.0 and -0.0 anywhere.
     """
@@ -59,7 +59,7 @@ def _make_describer(kind: type[Struct]) -> Callable[[Any], object]:
 
     A large graph has thousands of parameters to describe each time it is planned. So all fields are taken at once, and
     only those are looked at that hold floats or other values: text and whole numbers stay as they are. Most floats have
-    their default: None says it, and less is to be written; where all the last ones have it, they are left out. The types
+    their default: None says it, and less is to be hashed; where all the last ones have it, they are left out. The types
     are read as they are spelled: to evaluate them takes 5 % of a short render. What is not recognized is described by
     its value, which gives the same.
     """
