@@ -19,8 +19,8 @@ from api_reference import describe, describe_callable, write_signature
 from halation.glsl import GlslFunction, parse
 from halation.nodes import KINDS, Draw, Node, OutputSocket, Socket, Trait, Vector
 from halation.nodes._declare import draw as draw_module
+from halation.nodes._declare import item_kinds, sockets, traits, values
 from halation.nodes._declare import node as node_module
-from halation.nodes._declare import sockets, traits, values
 from halation.nodes._declare.values import read_value
 
 LIBRARIES = Path(__file__).parents[1] / "shaders/lib"
@@ -326,7 +326,7 @@ def _describe_draw(name: str) -> Iterator[str]:
 
 
 def _describe_helpers() -> Iterator[tuple[str, str]]:
-    for name in vocabulary.__all__:
+    for name in sorted((*vocabulary.__all__, *item_kinds.__all__)):
         helper = getattr(vocabulary, name)
         if inspect.isfunction(helper) and helper.__module__.startswith("halation.nodes._declare"):
             yield f"`{_write_line(name, helper)}`", _join_lines(helper.__doc__)
