@@ -41,6 +41,10 @@ TITLE, SPLITTER = 24.0, 6.0
 SHOTS = os.environ.get("HALATION_SHOTS", "")
 """The folder for screenshots; "" for none."""
 
+immapp.run = immapp.immapp_cpp.run
+"""Without what the package wraps it in: for each window that reads the sources of all loaded modules, to see whether it
+is in a tutorial of its own."""
+
 T = TypeVar("T")
 Point = tuple[float, float]
 

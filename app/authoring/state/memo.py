@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from operator import is_
 from typing import Any, TypeVar
 
 T = TypeVar("T")
@@ -17,7 +18,7 @@ class Memo:
     def get(self, name: str, of: tuple[object, ...], compute: Callable[[], T]) -> T:
         """The result of `compute`; it is computed again when one of the objects in `of` is another object."""
         before, answer = self.last(name)
-        if len(before) != len(of) or any(old is not new for old, new in zip(before, of, strict=True)):
+        if len(before) != len(of) or not all(map(is_, before, of)):
             answer = compute()
             self._answers[name] = (of, answer)
         return answer
