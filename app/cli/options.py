@@ -101,7 +101,7 @@ def locate_graph(text: str) -> Path:
 
     Raises DocumentError with a suggestion for a name that is neither.
     """
-    if text == "-" or os.path.lexists(text):
+    if text == "-" or (os.path.lexists(text) and not Path(text).is_dir()):
         return Path(text)
     from ..document import locating
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from halation.nodes import plugins
+
 from ..custom_nodes.plugins import find_graph_or_preset, find_preset, name_presets
 from ..errors import DocumentError
 from ..graph import did_you_mean
@@ -13,9 +15,12 @@ from ..graph import did_you_mean
 def locate_graph(name: str | Path) -> Path:
     """The file of `find_graph_or_preset`, which is there, or is a path whose reader says that nothing is there.
 
-    Raises DocumentError with a suggestion where the name of a preset or a preset's file may be meant.
+    A folder is no graph, so one that has the name of a preset does not hide it. Raises DocumentError with a suggestion
+    where the name of a preset or a preset's file may be meant.
     """
     path = find_graph_or_preset(name)
+    if path.name == str(name) and path.is_dir() and (preset := find_preset(path.name)):
+        return preset
     if not os.path.lexists(path) and (hint := _suggest_preset(path)):
         raise DocumentError(str(name), "", f"there is no such file{hint}", rule="unreadable-graph")
     return path
@@ -25,6 +30,10 @@ def _suggest_preset(path: Path) -> str:
     """How to name the preset that the user may mean by a path where nothing is, or ""."""
     if path.suffix.lower() == ".json":
         return f"; for the preset write {path.stem}" if find_preset(path.stem) else ""
-    is_name = path.name == str(path) and path.name.replace(".", "_").isidentifier()
+    if path.name != str(path) or not path.name.replace(".", "_").isidentifier():
+        return ""
+    namespace, dot, _ = path.name.partition(".")
     hint = did_you_mean(path.name, name_presets()) or "; halation demo --list prints them"
-    return f", and no preset has this name{hint}" if is_name else ""
+    if dot and all(plugin.namespace != namespace for plugin in plugins()):
+        hint = f": no plug-in '{namespace}' is installed, and its presets come with it"
+    return f", and no preset has this name{hint}"

@@ -88,11 +88,18 @@ def test_a_file_of_that_name_wins(cli, empty, graphs):
     assert cli("check", "soft_bloom").code == 3
 
 
+def test_a_folder_of_that_name_does_not(cli, empty):
+    (empty / "soft_bloom").mkdir()
+    assert cli("explain", "soft_bloom").code == 0
+    assert "bloom" in hal.load("soft_bloom").nodes
+
+
 @pytest.mark.parametrize(
     ("word", "hint"),
     [
         ("soft_blom", "no preset has this name; did you mean 'soft_bloom'?"),
         ("qqqqqqqq", "no preset has this name; halation demo --list prints them"),
+        ("acme.dream", "no preset has this name: no plug-in 'acme' is installed, and its presets come with it"),
         ("presets/soft_bloom.json", "; for the preset write soft_bloom"),
         ("soft_bloom.json", "; for the preset write soft_bloom"),
     ],
