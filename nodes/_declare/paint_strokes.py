@@ -1,7 +1,6 @@
 """Strokes of a brush as named items: a kind for each tool, and their fields."""
 
-import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from enum import StrEnum
 from typing import Annotated, Any, Literal, get_type_hints
 
@@ -178,24 +177,31 @@ def simplify_stroke(rows: tuple[Row, ...], tolerance: tuple[float, float, float]
     """The fewest points of a stroke so that none of those left out is farther from it than the tolerance (Ramer 1972,
     Douglas and Peucker 1973). `tolerance` is how much of x, of y and of the pressure is one unit of that distance.
     """
-    scaled = [tuple(part / unit for part, unit in zip(row, tolerance, strict=True)) for row in rows]
+    across, down, more = tolerance
+    places = [(x / across, y / down, pressure / more) for x, y, pressure in rows]
     kept, spans = {0, len(rows) - 1}, [(0, len(rows) - 1)]
     while spans:
         first, last = spans.pop()
-        farthest, split = 1.0, -1
-        for index in range(first + 1, last):
-            away = _measure_from_chord(scaled[index], scaled[first], scaled[last])
-            if away > farthest:
-                farthest, split = away, index
-        if split >= 0:
+        split = _find_farthest(places, first, last)
+        if split is not None:
             kept.add(split)
             spans += ((first, split), (split, last))
     return tuple(rows[index] for index in sorted(kept))
 
 
-def _measure_from_chord(place: Row, start: Row, end: Row) -> float:
-    """The distance from a place to a line between two others."""
-    way, rest = [b - a for a, b in zip(start, end, strict=True)], [b - a for a, b in zip(start, place, strict=True)]
-    square = sum(part * part for part in way)
-    along = min(max(sum(a * b for a, b in zip(way, rest, strict=True)) / square, 0.0), 1.0) if square > 0.0 else 0.0
-    return math.dist(rest, [along * part for part in way])
+def _find_farthest(places: Sequence[tuple[float, float, float]], first: int, last: int) -> int | None:
+    """The place that is farthest from the chord between two others, of those that are farther from it than 1."""
+    (x0, y0, z0), (x1, y1, z1) = places[first], places[last]
+    across, down, more = x1 - x0, y1 - y0, z1 - z0
+    square = across * across + down * down + more * more
+    farthest, split = 1.0, None
+    for index in range(first + 1, last):
+        x, y, z = places[index]
+        x, y, z = x - x0, y - y0, z - z0
+        along = (across * x + down * y + more * z) / square if square > 0.0 else 0.0
+        along = 0.0 if along < 0.0 else 1.0 if along > 1.0 else along
+        x, y, z = x - along * across, y - along * down, z - along * more
+        away = x * x + y * y + z * z
+        if away > farthest:
+            farthest, split = away, index
+    return split

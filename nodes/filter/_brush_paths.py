@@ -136,31 +136,42 @@ def find_patch(paths: Sequence[BrushPath], size: Size, overscan: int) -> Patch |
 
 def make_rows(draw: Draw, numbers: Iterable[float], width: int) -> Drawn:
     """A table with a power of two of rows."""
+    return draw.table(_fill_rows(numbers, width), width)
+
+
+def _fill_rows(numbers: Iterable[float], width: int) -> tuple[float, ...]:
+    """Numbers, and zeros after them up to a power of two of rows."""
     filled = tuple(numbers)
     rows = 1 << max(-(-len(filled) // (4 * width)) - 1, 0).bit_length()
-    return draw.table(filled + (0.0,) * (4 * width * rows - len(filled)), width)
+    return filled + (0.0,) * (4 * width * rows - len(filled))
 
 
 def draw_tables(draw: Draw, paths: Sequence[BrushPath], patch: Patch) -> PathTables:
     """Sort the segments of paths into the tiles of a patch."""
     across, down = -(-patch.size[0] // TILE), -(-patch.size[1] // TILE)
-    packed = [_pack(path) for path in paths]
     channels = sum(path.channel_count for path in paths)
     rows, four = 1 << (-(-channels // 16) - 1).bit_length(), Vector(width=4)
-    segments = make_rows(draw, (part for segments, _ in packed for part in segments), 2 * BLOCK)
-    facts = (
-        part
-        for number, (_, boxes) in enumerate(packed)
-        for count, box in boxes
-        for part in (number, count, 0.0, 0.0, *box)
-    )
-    owners = make_rows(draw, facts, 2 * BLOCK)
+    segments, owners = (draw.table(numbers, 2 * BLOCK) for numbers in _join(tuple(paths)))
     words = draw(
         "paint_words", segments=segments, owners=owners, size=(4 * across, rows * down), result=four,
         origin=patch.origin, rows=rows, channels=channels,
     )  # fmt: skip
     digest = draw("paint_digest", words=words, size=(across, down), result=four, rows=rows)
     return PathTables(segments, owners, words, digest, rows)
+
+
+@lru_cache(maxsize=256)
+def _join(paths: tuple[BrushPath, ...]) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """The rows of all segments, and of the channels of the paths."""
+    packed = [_pack(path) for path in paths]
+    facts = (
+        part
+        for number, (_, boxes) in enumerate(packed)
+        for count, box in boxes
+        for part in (number, count, 0.0, 0.0, *box)
+    )
+    segments = (part for segments, _ in packed for part in segments)
+    return _fill_rows(segments, 2 * BLOCK), _fill_rows(facts, 2 * BLOCK)
 
 
 @lru_cache(maxsize=2048)

@@ -80,6 +80,28 @@ def test_a_drag_paints_a_stroke_and_undo_takes_it_back_to_the_bit(gui, path: Pat
     gui(body, path)
 
 
+def test_the_picture_follows_the_pointer(gui, path: Path) -> None:
+    """A frame of the window waits for the picture of the stroke, so that it is never more than two frames behind."""
+
+    def body(ui: Ui) -> None:
+        start(ui)
+        ui.drag(at(ui, 0.1, 0.2), at(ui, 0.9, 0.8))  # the programs are there afterwards
+        ui.settled()
+        ui.drag(at(ui, 0.1, 0.5), at(ui, 0.2, 0.5), release=False)
+        preview, late, revisions = ui.editor.preview, 0, set[int]()
+        for number in range(30):
+            ui.move(at(ui, 0.2 + 0.02 * number, 0.5 + 0.2 * (number % 2)))
+            ui.wait(2)
+            late += preview.busy
+            image = preview.find_visible_image("A")
+            assert image is not None
+            revisions.add(image.revision)
+        ui.ctx.mouse_up(0)
+        assert len(revisions) == 30 and late == 0, (len(revisions), late)
+
+    gui(body, path)
+
+
 def test_a_clone_copies_from_where_alt_was_clicked(gui, path: Path) -> None:
     def body(ui: Ui) -> None:
         steps = start(ui)

@@ -94,17 +94,17 @@ class Preview:
             self._caches.append(request.frame_cache)
         self._images.keep(request.ports)
 
-    def work(self, seconds: float) -> bool:
-        """Compute for about `seconds`, at least one pass; True while there is more to do.
-
-        Returns early where a file is still being decoded. A user's mistake becomes one of `faults`.
+    def work(self, seconds: float, urgent: float = 0.0) -> bool:
+        """Compute for about `seconds`, at least one pass, or `urgent` while a wanted picture is not ready; True while
+        there is more to do. Returns early where a file is being decoded. A user's mistake becomes one of `faults`.
         """
         if self.paused:
             return False
-        deadline, worked = time.perf_counter() + seconds, False
+        began, worked = time.perf_counter(), False
+        deadline, latest = began + seconds, began + max(seconds, urgent)
         while self._advance():
             worked = True
-            if time.perf_counter() >= deadline:
+            if time.perf_counter() >= (latest if self.busy else deadline):
                 return self._has_more
         while self._draws and not self.busy and not (worked and time.perf_counter() >= deadline):
             self._thumbnails.draw_next()

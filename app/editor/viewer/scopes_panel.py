@@ -30,7 +30,8 @@ SECONDS = 0.2
 """Seconds between two refreshes."""
 
 PLAYING = 0.6
-"""Seconds between two refreshes during playback: measuring takes as long as two frames (45 ms for 480x270)."""
+"""Seconds between two refreshes during playback and while a stroke is drawn: measuring takes as long as two frames
+(45 ms for 480x270)."""
 
 _ICONS = (icons.ICON_FA_CHART_AREA, icons.ICON_FA_WAVE_SQUARE, icons.ICON_FA_CHART_COLUMN, icons.ICON_FA_CIRCLE_DOT)
 
@@ -143,7 +144,8 @@ class ScopesPanel:
             return
         if mark == self._mark or time_now < self._next:
             return
-        self._mark, self._next = mark, time_now + (PLAYING if self._context.preview.skims else SECONDS)
+        is_hurried = self._context.preview.skims or viewer.brush.stroke != ""
+        self._mark, self._next = mark, time_now + (PLAYING if is_hurried else SECONDS)
         self._waiting = ["", *names]  # nothing in this frame, in which the viewer has a new picture to draw
 
     def _take_step(self, image: DisplayedImage, name: str) -> None:

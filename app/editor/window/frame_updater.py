@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Mapping
 from types import MappingProxyType
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING
 from halation.nodes import catalogue, plugins
 from imgui_bundle import imgui
 
+from ...authoring.preview.preview import PATIENCE
 from ...authoring.preview.request import PreviewRequest
 from ...compiler.library import reload_library
 from ...graph import Port
@@ -30,8 +32,11 @@ FRAME_BUDGET = 0.012
 """Seconds of rendering per frame of the window: the rest of a sixtieth of a second is for drawing panels."""
 
 PLAY_BUDGET = 0.030
-"""Seconds of rendering per frame of the window during playback, when panels hardly change, and while a stroke
-follows the pointer."""
+"""Seconds of rendering per frame of the window during playback, when panels hardly change."""
+
+STROKE_BUDGET = 0.5
+"""Seconds that a frame of the window may wait for the picture of a stroke under the pointer: a reply within 0.1 s seems
+immediate (Nielsen 1993). A frame without the picture would only show that the stroke is behind."""
 
 _DELETED: Mapping[Kind, str] = MappingProxyType(
     {
@@ -117,8 +122,10 @@ class FrameUpdater:
         flat = {name: Port("/".join((*place, port.node)), port.socket) for name, port in ports.items()}
         whole, frame = list_whole_sides(context), session.time.frame
         preview.want(session.root, flat, bindings=session.bindings, scale=scale, frame=frame, whole=whole)
-        is_urgent = editor.timeline.playing or editor.viewer.brush.stroke != ""
-        self.is_working = preview.work(PLAY_BUDGET if is_urgent else FRAME_BUDGET)
+        is_painting = editor.viewer.brush.stroke != ""
+        preview.patience = math.inf if is_painting else PATIENCE
+        seconds = PLAY_BUDGET if editor.timeline.playing else FRAME_BUDGET
+        self.is_working = preview.work(seconds, STROKE_BUDGET if is_painting else 0.0)
         self.is_working = self._run_passes(flat, scale) or self.is_working
         self.is_working = self._work_on_page() or self.is_working
         if not self.is_working and not editor.interface.dragging and not editor.canvas.panning:

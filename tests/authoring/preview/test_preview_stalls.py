@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import random
 import threading
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -238,3 +240,28 @@ def test_a_slow_file_lets_frames_go_on_and_edits_through(preview, engine, tmp_pa
     settle(preview)
     assert len(loads) == 1, "what is being read is still wanted after an edit"
     np.testing.assert_array_equal(pixels(preview, engine), render_port(engine, chain(stops=4.0)))
+
+
+def test_an_urgent_picture_is_complete_at_once(preview):
+    """Who cannot wait for the next frame of the window gives it more time; without that, it takes a step."""
+    request_preview(preview, chain(stops=3.0))
+    while preview.busy and not preview.find_whole_image("A"):  # programs are built beside
+        preview.work(0.0, 60.0)
+    for stops, urgent in ((4.0, 0.0), (5.0, 60.0)):
+        request_preview(preview, chain(stops=stops, sigma=stops))
+        preview.work(0.0, urgent)
+        assert preview.busy is (urgent == 0.0)
+
+
+def test_a_run_that_may_go_on_ends_though_the_graph_changes_each_time(preview):
+    """Else a picture that takes longer than the patience would never be shown while a stroke is drawn."""
+    clock = iter(range(0, 10**9, 100))
+    preview.clock, preview.patience = lambda: float(next(clock)), math.inf
+    first = preview.find_whole_image("A")
+    for count in range(1, 200):
+        request_preview(preview, chain(stops=1.0 + 0.001 * count))
+        preview.work(0.0)
+        time.sleep(0.001)
+        if preview.find_whole_image("A") is not first:
+            return
+    raise AssertionError("no picture was ever shown")
