@@ -31,8 +31,9 @@ class Roto(Filter):
 
     The mask is how much of each pixel the shapes cover, to 2e-3. Shapes are combined in the order of their names.
     Points and tangents are fractions of the picture, so that shapes are the same at every size. A feather is measured
-    from the nearest point of the spline, and a wide one costs no more than a narrow one. A spline that
-    crosses itself is solid: what it runs around counts once, however often (nonzero winding), and has no edge inside.
+    from the point of the spline whose distance is the least part of its feather, so that an edge has no steps where
+    feathers differ; a wide one costs no more than a narrow one. A spline that crosses itself is solid: what it runs
+    around counts once, however often (nonzero winding), and has no edge inside.
 
     A shape can have a parent: a transform, a track of one or two points, or another shape, also one that is off. It is
     moved as it says itself, then as its parent is, and as the parent of that. Its motion blur is that of all of them.
@@ -41,6 +42,7 @@ class Roto(Filter):
     aliases = (
         "rotoscope", "rotopaint", "roto paint", "mask", "bezier", "spline", "b-spline", "garbage matte", "mask node",
         "polygon mask", "draw mask", "hold-out", "power window", "pen tool", "vignette mask", "curve mask",
+        "b-spline mask", "polyline mask", "roto brush",
     )  # fmt: skip
 
     matte = Field(0.0, doc="A mask that the shapes are added to.")

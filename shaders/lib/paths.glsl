@@ -2,7 +2,8 @@
 //
 // Coverage is the area right of each segment, with its sign, summed over the segments of a row: exact for polygons, as
 // in Levien's font-rs. What lies left of a tile is a number for each row. Soft edges are a function of the distance to
-// the nearest chord.
+// the nearest chord; where points have feathers, to that which is nearest for its feather. So the edge has no steps where
+// another part of the outline becomes the nearest one.
 
 #include "lib/finite.glsl"
 
@@ -50,13 +51,9 @@ float path_combine(float below, float change) {
     return min(below + amount, 1.0);
 }
 
-// The distance of four pixels to the nearest of some chords, which chord it is, and where on it. `place` is the middle of
-// the first pixel.
-void path_nearest(
-    int first, int count, vec2 place, int bits, out vec4 distances, out vec4 nearest, out vec4 along
-) {
+// The distance of four pixels to the nearest of some chords. `place` is the middle of the first pixel.
+void path_nearest(int first, int count, vec2 place, int bits, out vec4 distances) {
     vec4 squares = vec4(1e30), across = place.x + vec4(0.0, 1.0, 2.0, 3.0);
-    nearest = along = vec4(0.0);
     for (int n = first; n < first + count; ++n) {
         vec4 four = nearest_at(path_cell(n, bits));
         for (int k = 0; k < 4; ++k) {
@@ -66,14 +63,42 @@ void path_nearest(
             float y = place.y - ends.y;
             vec4 t = clamp((x * edge.x + y * edge.y) / max(dot(edge, edge), 1e-12), 0.0, 1.0);
             x -= t * edge.x;
-            vec4 away = y - t * edge.y, square = x * x + away * away;
-            bvec4 nearer = lessThan(square, squares);
-            squares = mix(squares, square, nearer);
-            nearest = mix(nearest, vec4(four[k]), nearer);
-            along = mix(along, t, nearer);
+            vec4 away = y - t * edge.y;
+            squares = min(squares, x * x + away * away);
         }
     }
     distances = sqrt(squares);
+}
+
+// The same for chords whose feathers differ: the least distance for the feather there, which is `feather` more than that
+// of the chord. No edge counts as narrower than a pixel. Both the place and the feather change evenly on a chord, so the
+// square of the quotient has one minimum.
+void path_nearest_wide(
+    int first, int count, vec2 place, int bits, float feather, out vec4 distances, out vec4 feathers
+) {
+    vec4 least = vec4(1e30), across = place.x + vec4(0.0, 1.0, 2.0, 3.0);
+    distances = vec4(1e15);
+    feathers = vec4(feather);
+    for (int n = first; n < first + count; ++n) {
+        vec4 four = nearest_at(path_cell(n, bits));
+        for (int k = 0; k < 4; ++k) {
+            vec4 ends = chords_at(path_cell(2 * int(four[k]), bits));
+            vec2 more = chords_at(path_cell(2 * int(four[k]) + 1, bits)).xy + feather, wide = max(more, 1.0);
+            vec2 edge = ends.zw - ends.xy;
+            float y = place.y - ends.y, growth = wide.y - wide.x;
+            vec4 x = across - ends.x, run = x * edge.x + y * edge.y;
+            vec4 slope = dot(edge, edge) * wide.x + growth * run;
+            vec4 t = (growth * (x * x + y * y) + run * wide.x) / max(slope, 1e-12);
+            t = mix(vec4(growth > 0.0 ? 1.0 : 0.0), clamp(t, 0.0, 1.0), greaterThan(slope, vec4(0.0)));
+            x -= t * edge.x;
+            vec4 away = y - t * edge.y, width = wide.x + t * growth, square = x * x + away * away;
+            vec4 relative = square / (width * width);
+            bvec4 nearer = lessThan(relative, least);
+            least = mix(least, relative, nearer);
+            distances = mix(distances, sqrt(square), nearer);
+            feathers = mix(feathers, mix(vec4(more.x), vec4(more.y), t), nearer);
+        }
+    }
 }
 
 // The integral of the soft edge 3 t^2 - 2 t^3.
@@ -110,19 +135,13 @@ vec4 path_covers(int bits, int across, int count, int beyond) {
     if (entry.z == 0.0) return path_pack(cover, mode, facts.y, invert);
     vec2 tile = entries_at(path_cell(at + 1, bits)).xy - float(beyond);
     vec2 more = shapes_at(path_cell(2 * int(entry.x) + 1, bits)).xy;  // growth, and whether points have feathers
-    vec4 distances, chords, along, feathers = vec4(facts.w);
-    path_nearest(
-        int(entry.y), int(entry.z), tile * float(PATH_TILE) + vec2(within) + 0.5, bits, distances, chords, along
-    );
+    vec2 place = tile * float(PATH_TILE) + vec2(within) + 0.5;
+    vec4 distances, feathers = vec4(facts.w);
+    if (more.y > 0.0) path_nearest_wide(int(entry.y), int(entry.z), place, bits, facts.w, distances, feathers);
+    else path_nearest(int(entry.y), int(entry.z), place, bits, distances);
     vec4 inside = mix(-distances, distances, greaterThanEqual(cover, vec4(0.5))) + more.x;
     if (more.x > 0.0) return path_pack(max(cover, clamp(inside + 0.5, 0.0, 1.0)), mode, facts.y, invert);
-    for (int n = 0; n < 4; ++n) {
-        if (more.y > 0.0) {
-            vec2 ends = chords_at(path_cell(2 * int(chords[n]) + 1, bits)).xy;
-            feathers[n] += mix(ends.x, ends.y, along[n]);
-        }
-        cover[n] = path_soften(cover[n], inside[n], feathers[n]);
-    }
+    for (int n = 0; n < 4; ++n) cover[n] = path_soften(cover[n], inside[n], feathers[n]);
     return path_pack(cover, mode, facts.y, invert);
 }
 

@@ -115,6 +115,26 @@ def test_a_feather_can_differ_from_point_to_point(run):
     np.testing.assert_allclose(mask[50, :50], np.arange(50) >= 20, atol=1e-5)
 
 
+@pytest.mark.parametrize(("narrow", "wide"), [(0.1, 0.4), (0.05, 0.6), (0.2, 0.21)])
+def test_feathers_that_differ_have_no_steps(run, narrow, wide):
+    """Against many points of the outline: the one counts whose distance is the least part of its feather."""
+    rows = np.reshape(wave(12, 3), (12, 7))
+    rows[:, 6] = np.where(np.arange(12) % 2, wide, narrow)
+    points, count = join_points(map(tuple, rows.tolist())), 1500
+    mask = mask_of(run, RotoShape(points=points))
+    places, t = trace(RotoShape(points=points), count), np.linspace(0.0, 1.0, count, endpoint=False)
+    widths = HEIGHT * (rows[:, 6:] + (np.roll(rows[:, 6:], -1, axis=0) - rows[:, 6:]) * t).ravel()
+    inside = measure_distance(places[::10], SIZE) > 0.0
+    expected = mask.copy()
+    for row, column in list(np.ndindex(HEIGHT, WIDTH))[::3]:
+        away = np.hypot(*(places - (column + 0.5, row + 0.5)).T)
+        nearest = np.argmin(away / widths)
+        signed = away[nearest] if inside[row, column] else -away[nearest]
+        steps = np.clip(0.5 + (signed + np.linspace(-0.5, 0.5, 9)) / widths[nearest], 0.0, 1.0)
+        expected[row, column] = np.average(3.0 * steps**2 - 2.0 * steps**3, weights=[0.5, *[1.0] * 7, 0.5])
+    np.testing.assert_allclose(mask, expected, atol=2e-3)
+
+
 def test_shapes_are_combined_in_the_order_of_their_names(run):
     first, second, third = (
         RotoShape(points=make_ellipse(x, 0.5, 0.5, 0.6), feather=feather, opacity=opacity)

@@ -1,4 +1,7 @@
-"""The chords that can be nearest to a pixel of a tile: what the distance to an outline is found from."""
+"""The chords that can be nearest to a pixel of a tile: what the distance to an outline is found from.
+
+Where the feather differs from point to point, near is what is near for its feather.
+"""
 
 from typing import NamedTuple
 
@@ -23,8 +26,8 @@ class NearChords(NamedTuple):
     counts: Array
 
 
-def find_candidates(ends: Array, reach: float, grid: TileGrid) -> NearChords:
-    """The chords that can be nearest to a pixel of a tile, within reach.
+def find_candidates(ends: Array, reach: float, grid: TileGrid, widths: Array | None = None) -> NearChords:
+    """The chords that can be nearest to a pixel of a tile, within reach; relative to `widths` at both ends, if any.
 
     Squares are cut into four again and again. The chords of a square are those that are no farther from its middle than
     the nearest one and twice the way to its corners.
@@ -36,8 +39,9 @@ def find_candidates(ends: Array, reach: float, grid: TileGrid) -> NearChords:
     ends = ends + grid.corner
     is_near = side <= _NEAR and np.abs(ends).max(initial=0.0) <= _NEAR
     ends = np.ascontiguousarray(ends.T, np.float32 if is_near else np.float64)
+    spans = None if widths is None else np.stack([widths.min(axis=1), widths.max(axis=1)]).astype(ends.dtype)
     while True:
-        squares, chord, sizes = _keep_near(ends, squares, chord, sizes, side, reach)
+        squares, chord, sizes = _keep_near(ends, spans, squares, chord, sizes, side, reach)
         if side == TILE or not len(chord):
             break
         side //= 2
@@ -64,17 +68,25 @@ def _cut_squares(
 
 
 def _keep_near(
-    ends: Array, squares: Array, chord: Array, sizes: Array, side: int, reach: float
+    ends: Array, spans: Array | None, squares: Array, chord: Array, sizes: Array, side: int, reach: float
 ) -> tuple[Array, Array, Array]:
-    """The chords that can be nearest within each square; squares that no chord reaches are left out."""
+    """The chords that can be nearest within each square; squares that no chord reaches are left out.
+
+    `spans` are the least and the largest width of each chord, if distances are relative to them.
+    """
     if not len(chord):
         return squares[:0], chord, sizes[:0]
     starts = np.cumsum(sizes) - sizes
     middle_x, middle_y = (np.repeat(((squares[:, axis] + 0.5) * side).astype(ends.dtype), sizes) for axis in (0, 1))
     away = _measure_distance(ends[:, chord], middle_x, middle_y)
     radius = side * 0.5**0.5 + _ROUNDING
-    limit = np.minimum(np.minimum.reduceat(away, starts) + 2.0 * radius, reach + radius)
-    is_near = away <= np.repeat(limit, sizes)
+    if spans is None:
+        limit = np.minimum(np.minimum.reduceat(away, starts) + 2.0 * radius, reach + radius)
+        is_near = away <= np.repeat(limit, sizes)
+    else:
+        narrow, wide = spans[:, chord]
+        limit = np.minimum.reduceat((away + radius) / narrow, starts)
+        is_near = (away - radius <= np.repeat(limit, sizes) * wide) & (away <= reach + radius)
     sizes = np.add.reduceat(is_near, starts, dtype=np.intp)
     return squares[sizes > 0], chord[is_near], sizes[sizes > 0]
 

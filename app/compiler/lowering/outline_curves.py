@@ -25,11 +25,11 @@ _STRAIGHT = 1e-4
 """Pixels: how far control points of a straight line may lie beside it."""
 
 _LOOSE = 1.0 / 750.0
-"""How far a chord may be from its curve where it stands for the distance, as a part of the feather: 2e-3 of coverage in
-the middle of the edge, where it changes most."""
+"""How far a chord may be from its curve where it stands for the distance, as a part of the least feather there: 2e-3 of
+coverage in the middle of the edge, where it changes most."""
 
-_LEAST_SLACK = 0.01
-"""The least such distance in pixels: a hundredth of a pixel is 5e-3 of coverage in an edge of three pixels."""
+_LEAST_SLACK = 0.002
+"""The least such distance in pixels: 2e-3 of coverage in an edge of 1.5 pixels; narrower ones are mostly exact."""
 
 
 class PlacedCurves(NamedTuple):
@@ -104,10 +104,11 @@ def flatten(outline: PlacedCurves) -> StraightSegments:
 def list_chords(outline: PlacedCurves, feather: float) -> StraightSegments:
     """Chords that stand for the distance to an outline, where an edge is as wide as a feather.
 
-    Parts of equal times are as short as the sharpest bend wants them, so most of them are joined again: as many as lie
-    beside one chord, by the places of twice as many points.
+    Points may have more than this feather. Parts of equal times are as short as the sharpest bend wants them, so most
+    of them are joined again: as many as lie beside one chord, by the places of twice as many points.
     """
-    slack = max(_LOOSE * feather, _LEAST_SLACK)
+    narrowest = feather + np.minimum(outline.feathers, outline.feathers[outline.following])
+    slack = np.maximum(_LOOSE * narrowest, _LEAST_SLACK)
     bends = outline.bends
     wanted = np.ceil(np.minimum(np.sqrt(0.75 * bends / slack), _MOST))
     counts = np.where(wanted > 1.0, 4.0 * np.ceil(0.5 * wanted), 1.0).astype(np.intp)

@@ -97,7 +97,7 @@ def _prepare(fill: OutlineFill, grid: TileGrid) -> _SortedOutline:
         fill.feather + curves.feathers.min(initial=0.0),
     )
     is_hard = feather <= 0.0 and fill.growth <= 0.0
-    chords = StraightSegments.none() if is_hard else keep_edges(list_chords(curves, feather))
+    chords = StraightSegments.none() if is_hard else keep_edges(list_chords(curves, fill.feather))
     # Of edges that are all wider than a pixel, coverage only says which side is inside.
     is_soft = fill.growth <= 0.0 and narrowest >= 1.0
     cells = sort_into_cells(chords.ends if is_soft else keep_edges(flatten(curves)).ends, grid)
@@ -106,7 +106,8 @@ def _prepare(fill: OutlineFill, grid: TileGrid) -> _SortedOutline:
         nothing = np.zeros(cells.are_crossed.shape, np.intp)
         near = NearChords(np.zeros(0, np.intp), nothing, nothing)
         return _SortedOutline(fill, cells, np.zeros((0, 4)), near, cells.are_crossed, level)
-    near = find_candidates(chords.ends, 0.5 * feather + fill.growth + 1.0, grid)
+    widths = np.maximum(fill.feather + chords.feathers, 1.0) if curves.feathers.any() else None
+    near = find_candidates(chords.ends, 0.5 * feather + fill.growth + 1.0, grid, widths)
     pairs = np.stack([chords.ends, np.pad(chords.feathers, ((0, 0), (0, 2)))], axis=1).reshape(-1, 4)
     return _SortedOutline(fill, cells, pairs, near, near.counts > 0, level)
 
