@@ -78,6 +78,14 @@ BLENDER = {
     "Gradient Texture": "ramp",
     "Noise Texture": "noise",
     "Gabor Texture": "gabor_noise",
+    "Keying Screen": "screen_clean_plate",
+    "Double Edge Mask": "edge_matte",
+    "Plane Track Deform": "corner_pin",
+    "Stabilize 2D": "transform",
+    "String to Image": "text",
+    "White Noise Texture": "noise",
+    "Vector Curves": "curves",
+    "Map Value": "map_range",
 }
 
 NUKE = {
@@ -160,6 +168,16 @@ NUKE = {
     "Camera": "camera",
     "DepthToPosition": "position_from_depth",
     "ReLight": "deferred_lighting",
+    "BlendMat": "mix_images",
+    "LevelSet": "distance_field",
+    "PLogLin": "color_space",
+    "PositionToPoints": "position_from_depth",
+    "ShuffleViews": "stereo",
+    "Stabilize2D": "transform",
+    "TimeClip": "time_offset",
+    "VectorCornerPin": "corner_pin",
+    "ZComp": "depth_merge",
+    "IBKColour": "screen_clean_plate",
 }
 
 FUSION = {
@@ -211,6 +229,14 @@ FUSION = {
     "WorldPosition": "position_from_depth",
     "CineonLog": "color_space",
     "AutoGain": "auto_exposure levels",
+    "BitmapMask": "set_matte",
+    "BSplineMask": "roto",
+    "PolylineMask": "roto",
+    "WandMask": "chroma_key",
+    "PerspectivePositioner": "corner_pin",
+    "GridWarper": "grid_warp",
+    "SetDomain": "crop",
+    "PanoMap": "panorama",
 }
 
 AFTER_EFFECTS = {
@@ -266,6 +292,12 @@ AFTER_EFFECTS = {
     "Color Dodge": "merge:color dodge",
     "Difference": "merge:difference",
     "Luminosity": "merge:luminosity",
+    "Refine Soft Matte": "feather",
+    "Drop Shadow": "text",
+    "Inner/Outer Key": "keyer",
+    "Leave Color": "hue_curves",
+    "Iris Wipe": "mix_images",
+    "Roto Brush": "roto",
 }
 
 NATRON = {
@@ -347,6 +379,10 @@ NATRON = {
     "STMap": "st_map",
     "Transform": "transform",
     "JoinViews": "stereo",
+    "AppendClip": "select",
+    "Implode": "bulge",
+    "Modulate": "hue_saturation",
+    "ColorSuppress": "despill",
 }
 """Natron's node groups, and the PIK and LightWrap of its community plug-ins."""
 

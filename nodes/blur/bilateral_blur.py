@@ -18,6 +18,7 @@ class BilateralBlur(Filter):
     aliases = (
         "bilateral", "denoise", "smart blur", "surface blur", "edge-preserving blur", "remove noise", "remove grain",
         "degrain", "noise reduction", "reduce noise", "smooth", "beauty", "skin smoothing", "dust and scratches",
+        "rolling guidance",
     )  # fmt: skip
 
     image = Image()

@@ -17,7 +17,7 @@ class ChromaKey(Pointwise):
         "ultra keyer", "color key", "channel key", "hue keyer", "green screen", "blue screen", "greenscreen",
         "bluescreen", "despill", "spill suppressor", "advanced spill suppressor", "color spill", "hue spill replace",
         "color range", "linear color key", "distance key", "difference key", "remove background", "3d keyer",
-        "qualifier",
+        "qualifier", "replace color", "wand mask", "rgb key",
     )  # fmt: skip
     traits = (Trait.NEEDS_COLOR, Trait.USES_ALPHA)
 

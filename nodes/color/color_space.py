@@ -18,7 +18,7 @@ class ColorSpace(Filter):
         "colorspace", "convert colorspace", "color space transform", "cst", "ocio color space", "ocio display",
         "ocio log convert", "log to lin", "log2lin", "lin to log", "linear to log", "cineon converter", "cineon log",
         "color profile converter", "color management", "aces", "acescg", "srgb to linear", "linearize", "gamut",
-        "gamut mapping", "convert to display", "rec709", "alexa log",
+        "gamut mapping", "convert to display", "rec709", "alexa log", "plog lin",
     )  # fmt: skip
     traits = (Trait.NEEDS_COLOR, Trait.CHANGES_ENCODING)
 

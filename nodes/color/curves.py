@@ -14,8 +14,8 @@ class Curves(Pointwise):
     """
 
     aliases = (
-        "rgb curves", "color curves", "color lookup", "color look up", "luma curve",
-        "tone curve", "channel curves", "arbitrary map", "contrast", "s curve",
+        "rgb curves", "color curves", "color lookup", "color look up", "luma curve", "tone curve", "channel curves",
+        "arbitrary map", "contrast", "s curve", "vector curves",
     )  # fmt: skip
 
     image = Image()

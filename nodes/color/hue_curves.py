@@ -17,6 +17,7 @@ class HueCurves(Pointwise):
     aliases = (
         "hue curves", "hue vs hue", "hue vs sat", "hue vs lum", "sat vs sat", "hue correct", "hue shift", "hue curve",
         "color curves by hue", "secondary grade", "selective color", "color equalizer", "hsl curves", "hue saturation",
+        "leave color", "change to color",
     )  # fmt: skip
     traits = (Trait.NEEDS_COLOR,)
 

@@ -14,7 +14,7 @@ class HueSaturation(Pointwise):
     aliases = (
         "hue shift", "hue correct", "hsv", "hsl", "hsv tool", "hue saturation value", "hue saturation lightness",
         "color balance hls", "change color", "shift hue", "hue rotate", "selective color", "leave color",
-        "change to color", "vibrance", "desaturate",
+        "change to color", "vibrance", "desaturate", "modulate", "hsv adjust",
     )  # fmt: skip
     traits = (Trait.NEEDS_COLOR,)
 

@@ -13,7 +13,7 @@ class Levels(Pointwise):
     aliases = (
         "brightness contrast", "black point", "white point", "input levels", "gamma", "auto contrast", "auto levels",
         "equalize", "stretch", "normalize", "histogram stretch", "set range", "map range", "remap", "fit range",
-        "contrast", "remap range", "map value",
+        "contrast", "remap range", "map value", "individual controls", "luma level", "levels individual controls",
     )  # fmt: skip
 
     image = Image()

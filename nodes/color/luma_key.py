@@ -12,7 +12,7 @@ class LumaKey(Pointwise):
 
     aliases = (
         "luminance key", "luma keyer", "keyer", "brightness key", "threshold", "extract", "luminance keyer",
-        "luma matte", "cc threshold", "binary alpha",
+        "luma matte", "cc threshold", "binary alpha", "ranges mask",
     )  # fmt: skip
 
     image = Image()

@@ -15,7 +15,7 @@ class LutFile(Filter):
 
     aliases = (
         "lut", "apply color lut", "3d lut", "cube", "vectorfield", "file lut", "ocio file transform", "apply lut",
-        "look up table", "film look", "csp",
+        "look up table", "film look", "csp", "truelight",
     )  # fmt: skip
     traits = (Trait.NEEDS_COLOR, Trait.CHANGES_ENCODING)
 

@@ -14,6 +14,7 @@ class Bulge(Filter):
 
     aliases = (
         "spherize", "pinch", "fish eye", "fisheye", "magnify", "dent", "punch", "cc lens", "warp", "liquify", "squeeze",
+        "implode",
     )  # fmt: skip
     traits = (Trait.WARPS,)
 

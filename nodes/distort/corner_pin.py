@@ -10,8 +10,9 @@ class CornerPin(Filter):
     """
 
     aliases = (
-        "corner pin", "cornerpin", "corner positioner", "four point", "perspective", "power pin", "screen replacement",
-        "quad warp", "homography", "plane track", "distort corners", "keystone", "unpin", "card", "cornerpin2d",
+        "corner pin", "cornerpin", "corner positioner", "four point", "perspective", "cc power pin",
+        "screen replacement", "quad warp", "homography", "plane track", "distort corners", "keystone", "unpin", "card",
+        "cornerpin2d", "vector corner pin", "perspective positioner", "planar transform", "plane track deform",
     )  # fmt: skip
     traits = (Trait.WARPS,)
 

@@ -12,7 +12,7 @@ class Crop(Filter):
 
     aliases = (
         "trim", "letterbox", "cut", "region of interest", "adjust bbox", "black outside", "rectangle", "matte bars",
-        "adjust bounding box", "border", "aspect bars",
+        "adjust bounding box", "border", "aspect bars", "set domain", "auto domain",
     )  # fmt: skip
     traits = (Trait.CUTS_OUT,)
 

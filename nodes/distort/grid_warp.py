@@ -24,7 +24,7 @@ class GridWarp(Filter):
 
     aliases = (
         "mesh warp", "grid distort", "griddistort", "bezier warp", "warp", "puppet", "liquify", "lattice", "cage",
-        "free form deformation", "bend", "bicubic warp", "smear",
+        "free form deformation", "bend", "bicubic warp", "smear", "grid warper",
     )  # fmt: skip
     traits = (Trait.WARPS,)
 

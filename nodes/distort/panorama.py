@@ -36,6 +36,7 @@ class Panorama(Filter):
     aliases = (
         "spherical transform", "latlong", "equirectangular", "cubemap", "cube map", "360", "vr", "vr converter", "hdri",
         "light probe", "mirrored ball", "tiny planet", "little planet", "fisheye", "environment", "lat long",
+        "latlong patcher", "pano map", "vr sphere to plane",
     )  # fmt: skip
 
     proxy_notes = (ProxyNote(("out",), "a view enlarges a part of the picture, and pixels of a proxy are larger"),)

@@ -10,7 +10,7 @@ class Pixelate(Filter):
     Pixels at the border of a square count by the part that it covers.
     """
 
-    aliases = ("mosaic", "pixelize", "pixel art", "blocks", "censor", "low resolution", "pixellate")
+    aliases = ("mosaic", "pixelize", "pixel art", "blocks", "censor", "low resolution", "pixellate", "blocky")
 
     image = Image()
     out = OutputSocket(follows="image")

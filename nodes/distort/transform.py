@@ -19,7 +19,8 @@ class Transform(Filter):
     aliases = (
         "move", "translate", "rotate", "scale", "position", "mirror", "flip", "flop", "flip horizontal",
         "flip vertical", "dve", "offset", "shift", "pan", "tile", "motion tile", "camera shake", "transform image",
-        "geometry", "turn", "zoom", "reposition", "pivot", "skew", "corner pin",
+        "geometry", "turn", "zoom", "reposition", "pivot", "skew", "corner pin", "stabilize 2d", "transform masked",
+        "warp stabilizer",
     )  # fmt: skip
     traits = (Trait.RESAMPLES,)
 

@@ -15,7 +15,7 @@ class DistanceField(Filter):
     aliases = (
         "sdf", "erode", "dilate", "grow", "shrink", "choke", "matte choker", "simple choker", "dilate erode",
         "erode dilate", "spread", "expand mask", "offset mask", "grow bounds", "stroke", "minimax", "outer glow",
-        "edge extend",
+        "edge extend", "level set",
     )  # fmt: skip
 
     proxy_notes = (ProxyNote(("distance",), "its lines have hard edges, and a proxy averages small specks away"),)

@@ -15,7 +15,7 @@ class Outline(Filter):
     line costs little more. Around the picture's own alpha, an outside line lies behind the picture.
     """
 
-    aliases = ("stroke", "contour", "cel outline", "ink", "toon lines", "line art", "freestyle", "border")
+    aliases = ("stroke", "contour", "cel outline", "ink", "toon lines", "line art", "freestyle", "border", "vegas")
 
     proxy_notes = (ProxyNote(("line", "out"), "its lines have hard edges, and a proxy averages small specks away"),)
 

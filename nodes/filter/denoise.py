@@ -13,7 +13,7 @@ class Denoise(Filter):
 
     aliases = (
         "oidn", "noise reduction", "remove noise", "ai denoise", "open image denoise", "clean up", "intel denoise",
-        "denoise sharpen",
+        "denoise sharpen", "remove grain",
     )  # fmt: skip
     proxy_notes = (ProxyNote(("out",), "a network sees other noise in a smaller picture"),)
 

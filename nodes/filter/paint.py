@@ -109,7 +109,7 @@ class Paint(Filter):
     aliases = (
         "rotopaint", "roto paint", "brush", "clone", "clone stamp", "stamp", "rubber stamp", "eraser", "smudge",
         "reveal", "paint strokes", "dust busting", "dustbust", "retouch", "touch up", "paint node", "vector paint",
-        "liquify", "wire removal", "rig removal", "draw",
+        "liquify", "wire removal", "rig removal", "draw", "paint mask", "write-on", "scribble",
     )  # fmt: skip
 
     image = Image()

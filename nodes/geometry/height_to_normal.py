@@ -12,7 +12,7 @@ class HeightToNormal(Filter):
 
     aliases = (
         "normal map", "bump", "bump to normal", "height map", "heightmap to normal", "height to normal",
-        "normal from height", "relief", "displacement to normal",
+        "normal from height", "relief", "displacement to normal", "slope",
     )  # fmt: skip
 
     proxy_notes = (ProxyNote(("normal", "color"), "it compares neighboring pixels, which are farther apart"),)

@@ -10,7 +10,7 @@ class PositionFromDepth(Filter):
 
     aliases = (
         "world position", "depth to position", "position pass", "depth to points", "p world", "unproject", "world pos",
-        "reconstruct position", "points",
+        "reconstruct position", "points", "position to points",
     )  # fmt: skip
 
     depth = Field(doc="Planar depth: the distance along the camera's axis.")

@@ -24,8 +24,8 @@ class Noise(Pointwise):
 
     aliases = (
         "fractal noise", "perlin", "fast noise", "clouds", "turbulent noise", "plasma", "fbm", "noise texture",
-        "simplex", "turbulence", "cloud", "fractal", "musgrave", "magic texture", "smoke", "se noise",
-        "tileable noise", "seamless noise", "looping noise",
+        "simplex", "turbulence", "cloud", "fractal", "musgrave", "magic texture", "smoke", "se noise", "tileable noise",
+        "seamless noise", "looping noise", "white noise texture", "noise alpha",
     )  # fmt: skip
 
     kind: Annotated[

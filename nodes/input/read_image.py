@@ -14,7 +14,7 @@ class ReadImage(Reader):
 
     aliases = (
         "read", "load", "loader", "image", "open", "import", "file", "footage", "input", "media", "image sequence",
-        "movie", "movie clip", "video", "picture", "plate", "texture file", "media in",
+        "movie", "movie clip", "video", "picture", "plate", "texture file", "media in", "movie file in",
     )  # fmt: skip
 
     path: Annotated[str, File(layer="layer"), Doc("Image file, relative to the graph's folder.")] = ""

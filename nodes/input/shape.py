@@ -45,7 +45,7 @@ class Shape(Pointwise):
         "rectangle", "ellipse", "circle", "square", "polygon", "star", "line", "box mask", "ellipse mask",
         "shape layer", "vignette mask", "mask", "garbage matte", "rounded rectangle", "triangle", "solid",
         "radial mask", "polygon mask", "power window", "window", "bezier", "spline", "path", "curve", "pen", "b-spline",
-        "freeform shape",
+        "freeform shape", "triangles mask",
     )  # fmt: skip
 
     shape: Annotated[

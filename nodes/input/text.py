@@ -76,6 +76,7 @@ class Text(Filter):
     aliases = (
         "title", "text+", "type", "caption", "label", "subtitle", "lower third", "watermark", "burn-in", "burnin",
         "slate", "timecode", "string", "font", "typography", "text generator", "draw text", "text image", "credits",
+        "text block", "text plus", "string to image", "drop shadow", "timer",
     )  # fmt: skip
 
     image = Image(0.0, doc="The picture below the text.")

@@ -12,7 +12,7 @@ class Despill(Pointwise):
 
     aliases = (
         "spill suppress", "spill suppressor", "hue correct", "color spill", "green spill", "spill", "despill screen",
-        "advanced spill suppressor", "key cleaner", "blue spill",
+        "advanced spill suppressor", "key cleaner", "blue spill", "color suppress",
     )  # fmt: skip
 
     image = Image()

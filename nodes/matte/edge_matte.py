@@ -12,7 +12,10 @@ class EdgeMatte(Filter):
     It is `4 s (1 - s)` of the blurred matte s. Use it to grade, blur or grain an edge alone.
     """
 
-    aliases = ("edge detect matte", "matte edge", "edge mask", "border mask", "rim matte", "edge blur mask", "inline")
+    aliases = (
+        "edge detect matte", "matte edge", "edge mask", "border mask", "rim matte", "edge blur mask", "inline",
+        "inside edge", "outside edge", "double edge mask",
+    )  # fmt: skip
 
     matte = Field(doc="A matte, 0..1.")
     width: Annotated[

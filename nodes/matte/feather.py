@@ -10,7 +10,10 @@ class Feather(Filter):
     where it was 1 and reaches 0 outside. It works on every channel by itself, from 0 to 1.
     """
 
-    aliases = ("soften matte", "edge blur", "soft edge", "blur mask", "refine edge", "mask feather", "inner feather")
+    aliases = (
+        "soften matte", "edge blur", "soft edge", "blur mask", "refine edge", "mask feather", "inner feather",
+        "refine soft matte", "refine hard matte",
+    )  # fmt: skip
 
     image = Image(doc="The matte, or a premultiplied picture.")
     out = OutputSocket(follows="image")

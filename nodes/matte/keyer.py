@@ -31,7 +31,8 @@ class Keyer(Filter):
     aliases = (
         "keyer", "keying", "keylight", "primatte", "ultimatte", "ibk", "ibk gizmo", "delta keyer", "chroma keyer",
         "ultra keyer", "color difference key", "green screen", "blue screen", "greenscreen", "bluescreen", "key",
-        "remove background", "image based keyer", "pull key", "pik", "colour difference key",
+        "remove background", "image based keyer", "pull key", "pik", "colour difference key", "inner outer key",
+        "key cleaner",
     )  # fmt: skip
     traits = (Trait.NEEDS_COLOR, Trait.USES_ALPHA)
 

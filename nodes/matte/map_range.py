@@ -11,7 +11,7 @@ class MapRange(Pointwise):
 
     aliases = (
         "map range", "remap range", "fit range", "clamp range", "clamp", "rescale", "normalize", "levels for data",
-        "linear step", "smoothstep", "set range",
+        "linear step", "smoothstep", "set range", "map value",
     )  # fmt: skip
 
     field = Field()

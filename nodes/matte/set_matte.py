@@ -12,7 +12,7 @@ class SetMatte(Pointwise):
 
     aliases = (
         "set alpha", "copy alpha", "shuffle copy", "track matte", "matte control", "add alpha", "stencil", "hold out",
-        "copy matte", "set matte",
+        "copy matte", "set matte", "bitmap mask",
     )  # fmt: skip
     traits = (Trait.USES_ALPHA,)
 

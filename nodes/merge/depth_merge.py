@@ -13,8 +13,8 @@ class DepthMerge(Filter):
     """
 
     aliases = (
-        "z combine", "zmerge", "depth combine", "z merge", "depth composite", "deep merge", "zcombine",
-        "z buffer", "depth matte",
+        "z combine", "zmerge", "depth combine", "z merge", "depth composite", "deep merge", "zcombine", "z buffer",
+        "depth matte", "z comp",
     )  # fmt: skip
     traits = (Trait.USES_ALPHA,)
 

@@ -47,6 +47,7 @@ class Merge(Pointwise):
         "over", "composite", "alpha over", "blend", "layer", "mix", "comp", "a over b", "blend mode", "blending mode",
         "layers", "channel merge", "transfer mode", "set matte", "z combine", "zmerge", "mix color", "apply mode",
         "alpha matte", "track matte", "solid composite", "screen", "clipping mask", "preserve transparency",
+        "psd merge", "multi merge",
     )  # fmt: skip
 
     a = Image(doc="The foreground.")

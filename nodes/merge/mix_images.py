@@ -8,7 +8,8 @@ class MixImages(Pointwise):
 
     aliases = (
         "mix", "dissolve", "cross dissolve", "key mix", "keymix", "crossfade", "blend", "fade", "lerp", "interpolate",
-        "mix color", "wipe", "cross fade", "opacity", "transition", "split", "time dissolve", "add mix",
+        "mix color", "wipe", "cross fade", "opacity", "transition", "split", "time dissolve", "add mix", "blend mat",
+        "gradient wipe", "linear wipe", "iris wipe", "block dissolve", "cross top",
     )  # fmt: skip
 
     a = Image()

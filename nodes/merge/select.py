@@ -13,7 +13,7 @@ class Select(Pointwise):
 
     aliases = (
         "switch", "select", "choose", "which", "input switch", "multi switch", "toggle", "a b", "version", "variant",
-        "dissolve", "pick input", "layer switch", "compare", "index switch", "menu switch",
+        "dissolve", "pick input", "layer switch", "compare", "index switch", "menu switch", "if else", "append clip",
     )  # fmt: skip
 
     traits = (Trait.KEEPS_NON_FINITE,)

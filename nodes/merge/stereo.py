@@ -12,7 +12,8 @@ class Stereo(Filter):
 
     aliases = (
         "stereo", "anaglyph", "3d glasses", "side by side", "over under", "top bottom", "stereoscopic", "join views",
-        "stereo combine", "red cyan", "interlaced stereo", "split and join", "dubois",
+        "stereo combine", "red cyan", "interlaced stereo", "split and join", "dubois", "shuffle views", "stereo align",
+        "combiner",
     )  # fmt: skip
     traits = (Trait.USES_ALPHA,)
 

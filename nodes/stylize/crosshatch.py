@@ -10,7 +10,7 @@ class Crosshatch(Pointwise):
     the lighter layers, as in tonal art maps (Praun et al. 2001). Each pixel is the mean of nine samples. Alpha is kept.
     """
 
-    aliases = ("hatching", "sketch", "pencil", "cross hatch", "pen and ink", "scribble", "engraving")
+    aliases = ("hatching", "sketch", "pencil", "cross hatch", "pen and ink", "scribble", "engraving", "charcoal")
 
     proxy_notes = (ProxyNote(("out",), "its pattern is as fine as pixels of the proxy"),)
 

@@ -15,7 +15,7 @@ class Kuwahara(Filter):
 
     aliases = (
         "oil paint", "painterly", "watercolor", "paint", "anisotropic kuwahara", "brush strokes", "painting", "stylize",
-        "artistic",
+        "artistic", "smooth anisotropic",
     )  # fmt: skip
 
     image = Image()

@@ -12,7 +12,7 @@ class TimeOffset(Filter):
 
     aliases = (
         "shift time", "slip", "delay", "offset", "time shift", "frame offset", "slip clip", "frame delay",
-        "append clip", "time stretch offset",
+        "append clip", "time stretch offset", "time clip", "time machine",
     )  # fmt: skip
     traits = (Trait.KEEPS_NON_FINITE,)
 

@@ -66,6 +66,7 @@ _END_ALIASES: Mapping[str, tuple[str, ...]] = MappingProxyType(
             "composite",
             "viewer",
             "media out",
+            "movie file out",
             "group output",
             "graph output",
         ),

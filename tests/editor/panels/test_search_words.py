@@ -38,6 +38,17 @@ COMMON_NAMES = {
     "sharpen": "sharpen", "unsharp mask": "sharpen", "upscale": "upscale", "super resolution": "upscale",
     "stereo": "stereo", "anaglyph": "stereo", "corner pin": "corner_pin", "screen replacement": "corner_pin",
     "grid warp": "grid_warp", "mesh warp": "grid_warp", "morph": "spline_warp",
+    "blendmat": "mix_images", "textblock": "text", "ifelse": "select", "inside edge": "edge_matte",
+    "outside edge": "edge_matte", "rgb key": "chroma_key", "luma level": "levels", "hsv adjust": "hue_saturation",
+    "slope": "height_to_normal", "movie file in": "read_image", "movie file out": "output:Image",
+    "cc power pin": "corner_pin", "levels (individual controls)": "levels", "vr sphere to plane": "panorama",
+    "truelight": "lut_file", "blocky": "pixelate", "psd merge": "merge", "rolling guidance": "bilateral_blur",
+    "replace color": "chroma_key", "ranges mask": "luma_key", "triangles mask": "shape", "paint mask": "paint",
+    "write-on": "paint", "scribble": "paint", "vegas": "outline", "remove grain": "denoise", "noise alpha": "noise",
+    "gradient wipe": "mix_images", "linear wipe": "mix_images", "block dissolve": "mix_images",
+    "change to color": "hue_curves", "refine hard matte": "feather", "key cleaner": "keyer",
+    "time machine": "time_offset", "latlong patcher": "panorama", "planar transform": "corner_pin",
+    "warp stabilizer": "transform", "transform masked": "transform", "charcoal": "crosshatch",
 }  # fmt: skip
 """What somebody types who wants a node, in the words of the trade."""
 
