@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cv2
 import numpy as np
 import pytest
 from halation.nodes.color.color_palette import ColorPalette
@@ -70,3 +71,62 @@ def test_blue_noise_keeps_the_average(run):
     assert {*np.unique(out[..., 0])} == {0.0, 1.0}
     parts = out[..., 0].mean(0).reshape(8, 8).mean(1)
     np.testing.assert_allclose(parts, np.linspace(0.0, 1.0, 64).reshape(8, 8).mean(1), atol=0.03)
+
+
+def diffuse_plainly(codes: np.ndarray, palette: np.ndarray) -> np.ndarray:
+    """The procedure of Floyd and Steinberg (1976), pixel by pixel; no pixel goes beyond the colors of the palette."""
+    waiting, (height, width) = codes.astype(np.float64), codes.shape[:2]
+    for y, x in np.ndindex(height, width):
+        wanted = np.clip(waiting[y, x], palette.min(0), palette.max(0))
+        waiting[y, x] = palette[((palette - wanted) ** 2).sum(1).argmin()]
+        for right, down, share in ((1, 0, 7), (-1, 1, 3), (0, 1, 5), (1, 1, 1)):
+            if 0 <= x + right < width and y + down < height:
+                waiting[y + down, x + right] += share / 16.0 * (wanted - waiting[y, x])
+    return waiting
+
+
+@pytest.mark.parametrize("size", [(33, 21), (1, 9), (9, 1)])
+def test_errors_are_diffused_as_published(run, size):
+    random = np.random.default_rng(size[0])
+    colors = random.random((7, 3))
+    codes = random.random((size[1], size[0], 3))
+    picture = np.concatenate([decode(codes), np.ones((*codes.shape[:2], 1))], -1).astype(np.float32)
+    out = run(ColorPalette(colors=make_stops(colors), dither="error diffusion"), {"image": picture})
+    expected = diffuse_plainly(encode(picture[..., :3].astype(np.float64)), encode(colors))
+    np.testing.assert_allclose(encode(out[..., :3]), expected, atol=2e-3)
+
+
+def test_error_diffusion_keeps_the_average_and_alpha(run):
+    codes = np.broadcast_to(np.linspace(0.0, 1.0, 64)[None, :, None], (64, 64, 3))
+    picture = np.concatenate([0.5 * decode(codes), np.full((64, 64, 1), 0.5)], -1).astype(np.float32)
+    colors = np.array([(0.0,) * 3, (1.0,) * 3])
+    out = run(ColorPalette(colors=make_stops(colors), dither="error diffusion"), {"image": picture})
+    assert {*np.unique(out[..., 0])} == {0.0, 0.5} and {*np.unique(out[..., 3])} == {0.5}
+    parts = 2.0 * out[..., 0].mean(0).reshape(8, 8).mean(1)
+    np.testing.assert_allclose(parts, np.linspace(0.0, 1.0, 64).reshape(8, 8).mean(1), atol=0.02)
+
+
+@pytest.mark.parametrize("count", [2, 5, 16])
+def test_found_colors_are_as_near_as_those_of_opencv(run, rendered_frame, count):
+    """The mean squared error, against the best of five runs of its k-means."""
+    light = np.clip(rendered_frame[:160, :200, :3], 0.0, 1.0)
+    picture = np.concatenate([light, np.ones_like(light[..., :1])], -1).astype(np.float32)
+    codes = encode(light.astype(np.float64))
+    out = run(ColorPalette(palette="found", count=count, dither="none"), {"image": picture})
+    assert len(np.unique(out.reshape(-1, 4), axis=0)) == count
+    samples = codes.reshape(-1, 3).astype(np.float32)
+    stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 100, 1e-5)
+    centers = cv2.kmeans(samples, count, None, stop, 5, cv2.KMEANS_PP_CENTERS)[2]
+    best = np.mean(cKDTree(centers).query(samples)[0] ** 2)
+    ours = np.mean(((encode(out[..., :3].astype(np.float64)) - codes) ** 2).sum(-1))
+    assert ours < 1.1 * best, (ours, best)
+
+
+def test_a_pattern_goes_with_found_colors(run, rendered_frame):
+    """What is transparent is not counted among the colors that are found."""
+    picture = np.concatenate([rendered_frame[:64, :64, :3], np.ones((64, 64, 1))], -1).astype(np.float32)
+    picture[:8] = (90.0, 0.0, 0.0, 0.0)
+    for dither in ("bayer 8", "blue noise", "error diffusion"):
+        out = run(ColorPalette(palette="found", count=3, dither=dither), {"image": picture})
+        assert len(np.unique(out[..., :3].reshape(-1, 3), axis=0)) == 3 and (out[..., 3] == picture[..., 3]).all()
+        assert out[..., :3].max() <= 1.001 * picture[8:, :, :3].max()
