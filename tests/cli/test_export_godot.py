@@ -163,6 +163,16 @@ def test_blocks_are_packed_by_std140(look: Path) -> None:
     assert theirs.pack(layout, 80, uniforms) == expected
 
 
+@pytest.mark.parametrize("format", ["glsl", "web", "godot", "unity", "reshade"])
+def test_what_runs_on_the_processor_is_refused(cli, graphs, tmp_path: Path, format: str) -> None:
+    """A pass of it has no shader: what follows would show whatever lies in its picture."""
+    diffused = {"type": "color_palette", "values": {"dither": "error diffusion"}}
+    path = graphs(nodes={"dots": diffused}, links={"dots.image": "light.out", "outputs.image": "dots.out"})
+    done = cli("export", path, "--to", format, "-o", tmp_path / "out")
+    assert done.code == 3 and "node 'dots' runs on the processor, which an exported effect cannot" in done.err
+    assert not (tmp_path / "out").exists()
+
+
 def test_what_no_game_gives_is_refused(cli, graphs, tmp_path: Path) -> None:
     refuse_unfit_graphs(cli, graphs, tmp_path / "no", "godot")
 

@@ -172,6 +172,13 @@ def _refuse_unsuitable(plan: Plan, game: str) -> None:
                 "file, or mute the node",
                 node=owner,
             )
+        if render_pass.host is not None:
+            owner = render_pass.nodes[-1]
+            raise GraphError(
+                f"{describe_owner(owner)} runs on the processor, which an exported effect cannot: "
+                "render it to a file first, or mute the node",
+                node=owner,
+            )
         if render_pass.mesh and game:
             owner = render_pass.nodes[-1]
             raise GraphError(
