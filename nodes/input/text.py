@@ -234,7 +234,7 @@ def _sort_layers(letters: Iterable[_Letter]) -> list[list[_Letter]]:
     layers = list[list[_Letter]]()
     for letter in letters:
         for layer in layers:
-            if not any(_overlap(letter.box, other.box) for other in layer[-_NEIGHBORS:]):
+            if not _meets_any(letter, layer[-_NEIGHBORS:]):
                 layer.append(letter)
                 break
         else:
@@ -243,6 +243,16 @@ def _sort_layers(letters: Iterable[_Letter]) -> list[list[_Letter]]:
             else:
                 layers[-1].append(letter)
     return layers
+
+
+def _meets_any(letter: _Letter, others: Iterable[_Letter]) -> bool:
+    """True if a letter overlaps another one. Each is compared with hundreds, so this is written out."""
+    left, top, right, bottom = letter.box
+    for other in others:
+        box = other.box
+        if left < box[2] and box[0] < right and top < box[3] and box[1] < bottom:
+            return True
+    return False
 
 
 def _draw_letters(draw: Draw, typeset: TypesetText, letters: list[_Letter]) -> Drawn:
