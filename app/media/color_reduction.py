@@ -55,10 +55,10 @@ def decode(codes: Array) -> Array:
 def find_palette(codes: Array, count: int) -> Array:
     """At most `count` colors of a picture: those of boxes, moved by k-means (Lloyd 1982).
 
-    What is transparent does not count.
+    What is transparent does not count, and light counts up to 1: else a few lamps would take most colors.
     """
     visible = codes.reshape(-1, codes.shape[-1])
-    visible = visible[visible[:, 3] > 0.0, :3].astype(np.float64)
+    visible = np.minimum(visible[visible[:, 3] > 0.0, :3].astype(np.float64), 1.0)
     if not len(visible):
         return np.zeros((1, 3))
     samples = visible[:: -(-len(visible) // _SAMPLES)]

@@ -122,6 +122,17 @@ def test_found_colors_are_as_near_as_those_of_opencv(run, rendered_frame, count)
     assert ours < 1.1 * best, (ours, best)
 
 
+def test_lamps_do_not_take_all_colors(run, rendered_frame):
+    """They are as bright as 40: what is found is what is found where all light ends at 1."""
+    assert rendered_frame[..., :3].max() > 30.0
+    node = ColorPalette(palette="found", count=8, dither="none")
+    bright, clipped = (
+        np.unique(run(node, {"image": picture})[..., :3].reshape(-1, 3), axis=0)
+        for picture in (rendered_frame, np.minimum(rendered_frame, 1.0))
+    )
+    np.testing.assert_allclose(bright, clipped, atol=1e-3)
+
+
 def test_a_pattern_goes_with_found_colors(run, rendered_frame):
     """What is transparent is not counted among the colors that are found."""
     picture = np.concatenate([rendered_frame[:64, :64, :3], np.ones((64, 64, 1))], -1).astype(np.float32)
