@@ -107,6 +107,12 @@ def write_node_names() -> str:
     return "".join(parts)
 
 
+def write_nodes() -> str:
+    """The page of all nodes, with the sheet of their pictures."""
+    title, _, rest = manual.catalogue_page(list(built_in_nodes().values())).partition("\n\n")
+    return f"{title}\n\n![All nodes at their defaults on the sample frame](images/nodes.jpg)\n\n{rest}"
+
+
 def _link_nodes(wanted: str) -> str:
     """Links to the nodes that program_words.py names: one with a mode, or several."""
     node, _, mode = wanted.partition(":")
@@ -121,7 +127,7 @@ WHOLE_PAGES: Mapping[str, Callable[[], str]] = MappingProxyType(
     {
         "docs/api.md": api_reference.write_reference,
         "docs/node-names.md": write_node_names,
-        "docs/nodes.md": lambda: manual.catalogue_page(list(built_in_nodes().values())),
+        "docs/nodes.md": write_nodes,
         "docs/writing-nodes.md": node_reference.write_reference,
     }
 )
