@@ -87,6 +87,10 @@ class Browser:
         while not self._is_loaded:
             self._note(self._read())
 
+    def prepare(self, code: str) -> None:
+        """Run JavaScript in each page that is opened from now on, before its own."""
+        self._call("Page.addScriptToEvaluateOnNewDocument", source=f"{{ {code} }}")
+
     def run(self, code: str) -> Any:
         """The value of JavaScript in the page; a promise is awaited."""
         answer = self._call("Runtime.evaluate", expression=code, awaitPromise=True, returnByValue=True)

@@ -4,54 +4,25 @@ from __future__ import annotations
 
 import itertools
 import json
-import shutil
 import subprocess
 import sys
-import zlib
-from base64 import b64decode
 from pathlib import Path
 
 import moderngl
 import numpy as np
 import pytest
+from exported_looks import LOOK, VALIDATOR, open_page, plan_presets, validate
 from exr_files import read
-from halation import document
-from halation.compiler import Plan, Request, compile_graph
 from halation.compiler.knobs import Knob, Point
 from halation.export.package.assembly import _describe_skipped  # pyright: ignore[reportPrivateUsage]
 from halation.export.package.curves import PLACED, fill_gaps, read_slot, simplify, write_slot
 from halation.export.package.dialects import COVERING_VERTEX, DIALECTS
 from halation.export.package.exact_functions import use_exact_functions
 from halation.export.package.parts import VariantSamples
-from halation.export.package.planning import TARGET
 from halation.export.package.sampling import JUMP_STEP, KnobSampler, Sample, Slot
 from halation.export.package.variants import MAX_SPANS, find_axis
-from halation.inputs.provider import MediaProvider
-from halation.presets import paths
-from halation.resources.sandbox import UNRESTRICTED
 from isf_files import IMAGE, isf
 from scipy.interpolate import RegularGridInterpolator
-
-VALIDATOR = shutil.which("glslangValidator")
-LOOK = {
-    "nodes": {
-        "glow": {"type": "bloom", "values": {"radius": 0.1}},
-        "tone": {"type": "saturation", "values": {"saturation": 1.0}},
-        "grain": {"type": "film_grain", "values": {"amount": 0.1}},
-    },
-    "links": {
-        "glow.image": "light.out",
-        "tone.image": "glow.out",
-        "grain.image": "tone.out",
-        "outputs.image": "grain.out",
-    },
-    "controls": {
-        "stops": {"target": "light.stops"},
-        "glow": {"target": "glow.intensity"},
-        "size": {"target": "glow.radius"},
-        "color": {"target": "tone.saturation", "label": "Color"},
-    },
-}
 
 
 @pytest.fixture
@@ -153,23 +124,6 @@ def test_a_control_is_held_with_all_its_parts(cli, graphs, tmp_path: Path) -> No
     np.testing.assert_allclose(read_package(tmp_path / "look"), read(tmp_path / "a.exr"), atol=2e-3)
 
 
-def validate(texts: dict[str, str], folder: Path, *words: str) -> list[str]:
-    """What the reference compiler of Khronos finds wrong with shaders by file name."""
-    assert VALIDATOR is not None
-    for name, text in texts.items():
-        (folder / name).write_text(text)
-    command = [VALIDATOR, *words, *sorted(str(folder / name) for name in texts)]
-    said = subprocess.run(command, capture_output=True, text=True, cwd=folder).stdout
-    return [line for line in said.splitlines() if line.startswith("ERROR")]
-
-
-def plan_presets() -> list[Plan]:
-    pictures = MediaProvider(sandbox=UNRESTRICTED)
-    return [
-        compile_graph(document.load(path, sandbox=UNRESTRICTED), Request(), pictures, target=TARGET) for path in paths()
-    ]
-
-
 @pytest.mark.skipif(VALIDATOR is None, reason="glslangValidator is not installed")
 @pytest.mark.parametrize("dialect", ["glsl410", "es300", "vulkan450"])
 def test_the_reference_compiler_takes_the_programs_of_all_presets(dialect: str, tmp_path: Path) -> None:
@@ -213,17 +167,6 @@ def test_angles_in_browsers_are_exact(name: str, numbers: np.ndarray) -> None:
     shown = np.frombuffer(sink.read(), np.float32).reshape(-1, len(outputs)).T
     context.release()
     np.testing.assert_allclose(shown, exact, rtol=1e-6, atol=2e-6)
-
-
-def open_page(text: str) -> tuple[dict, list[bytes]]:
-    """The content of a page and its pixels."""
-    packed = json.loads(text.partition('<script id="package" type="application/json">')[2].partition("</script>")[0])
-    content = json.loads(zlib.decompress(b64decode(packed["content"])))
-    blobs = []
-    for stride, blob in packed["blobs"]:
-        planes = np.frombuffer(zlib.decompress(b64decode(blob)), np.uint8)
-        blobs.append(planes.reshape(stride, -1).T.tobytes())
-    return content, blobs
 
 
 def test_a_page_holds_everything(cli, graphs, tmp_path: Path) -> None:

@@ -93,6 +93,35 @@ def test_a_page_says_where_its_device_places_corners_roughly(cli, browser: Brows
     assert said and browser.run("halation.gl.getParameter(halation.gl.SUBPIXEL_BITS)") == 4
 
 
+FIRST_SIZE = """
+    const look = () => {
+        if (window.halation?.firstPictureAt) window.firstSize = halation.picture.size;
+        else requestAnimationFrame(look);
+    };
+    requestAnimationFrame(look);
+"""
+
+
+def test_a_large_page_begins_with_a_draft(cli, graphs, browser: Browser, tmp_path: Path) -> None:
+    """It is small and looks like the whole picture, which follows by itself, also after the device was lost."""
+    graph = graphs(nodes={"glow": {"type": "bloom"}}, links={"glow.image": "light.out", "outputs.image": "glow.out"})
+    assert cli("export", graph, "-o", tmp_path / "page.html", "--size", "960x540").code == 0
+    browser.prepare(FIRST_SIZE)
+    show(browser, tmp_path / "page.html")
+    browser.wait_until("!halation.isDirty")
+    assert browser.run("window.firstSize") == [240, 135] and browser.run("halation.picture.size") == [960, 540]
+    whole = take(browser, tmp_path, {})
+    url = browser.run("halation.showDraft(); halation.canvas.toDataURL()")
+    (tmp_path / "draft.png").write_bytes(base64.b64decode(url.partition(",")[2]))
+    assert np.abs(read_picture(tmp_path / "draft.png") - whole).mean() < 1.0
+    browser.run("window.loser = halation.gl.getExtension('WEBGL_lose_context'); loser.loseContext()")
+    browser.wait_until("halation.reader === null")
+    browser.run("loser.restoreContext()")
+    browser.wait_until("halation.reader && !halation.isDirty")
+    np.testing.assert_array_equal(take(browser, tmp_path, {}), whole)
+    assert not browser.messages
+
+
 def test_a_lost_context_comes_back(browser: Browser, page: Path) -> None:
     before = take(browser, page, {"stops": 1.5})
     browser.run("window.loser = halation.gl.getExtension('WEBGL_lose_context'); loser.loseContext()")

@@ -7,9 +7,11 @@ from collections.abc import Callable
 import pytest
 from gui_driver import Ui
 from halation import presets
-from halation.editor.tutorials.coach import Coach, fit_frame, place_card
+from halation.authoring.edits.element_id import ElementId
+from halation.editor.tutorials.coach import READABLE_ZOOM, Coach, find_noted, fit_frame, place_card
 from halation.editor.tutorials.course import COURSE
 from halation.editor.tutorials.lessons import LESSONS
+from selection import list_cases
 
 Act = Callable[[Ui], object]
 
@@ -190,6 +192,51 @@ def test_the_card_is_inside_the_window_and_beside_its_widget(size, rect) -> None
     assert x >= 0.0 and y >= 0.0 and x + 320.0 <= size[0] and y + 120.0 <= size[1]
     if rect is not None and rect[2] - rect[0] < 100.0 and rect[3] - rect[1] < 100.0:
         assert x >= rect[2] or x + 320.0 <= rect[0] or y >= rect[3] or y + 120.0 <= rect[1]
+
+
+def test_the_card_hides_no_note_if_there_is_another_place() -> None:
+    viewer, area = (0.0, 0.0, 700.0, 300.0), (0.0, 0.0, 1000.0, 800.0)
+    first = place_card(viewer, (320.0, 120.0), area, 1.0)
+    assert first == (10.0, 314.0)
+    x, y = place_card(viewer, (320.0, 120.0), area, 1.0, [(200.0, 330.0, 350.0, 350.0)])
+    assert (x, y) == (380.0, 314.0), "below, at the other end"
+    assert place_card(viewer, (320.0, 120.0), area, 1.0, [(0.0, 0.0, 1000.0, 800.0)]) == first, "nowhere is free"
+
+
+def test_the_node_of_a_step_has_its_notes() -> None:
+    places = {
+        "box": (264.0, 0.0),
+        "comments.c1": (264.0, -110.0),
+        "comments.c2": (264.0, -400.0),
+        "outputs.image": (9.0, 0.0),
+    }
+    named = {ElementId(name): place for name, place in places.items()}
+    assert find_noted("title box", named) == ["box", "comments.c1"]
+    assert find_noted("pin in box.image", named) == ["box", "comments.c1"]
+    assert find_noted("title outputs.image", named) == ["outputs.image"]
+    assert find_noted("Viewer", named) == find_noted("title gone", named) == []
+
+
+@pytest.mark.parametrize("lesson", list_cases(COURSE[3:5], [*COURSE[:3], *COURSE[5:]]), ids=lambda lesson: lesson.id)
+def test_notes_of_a_lesson_can_be_read_beside_its_task(gui, lesson) -> None:
+    """In a window of 1366x768 each step shows its node with the notes above it, in letters of 11 pixels."""
+
+    def body(ui: Ui) -> None:
+        progress, canvas = ui.window._contexts.tutorials.progress, ui.editor.canvas
+        ui.window._contexts.tutorials.actions.run(f"lesson.{lesson.id}")
+        ui.wait(5)
+        assert canvas.zoom >= READABLE_ZOOM
+        for step in lesson.steps:
+            ui.wait(4)
+            left, top, right, bottom = ui.editor.places["Graph"]
+            for key in find_noted(step.widget, ui.session.positions):
+                if key.is_note:
+                    x, y, end, below = ui.editor.places[f"title {key}"]
+                    assert left <= x and end <= right and top <= y and below <= bottom, step.sentence
+            if step is not lesson.steps[-1]:
+                progress.go(1)
+
+    gui(body, size=(1366, 740))
 
 
 def test_the_frame_stays_inside_of_the_panel_of_its_widget() -> None:

@@ -191,7 +191,7 @@ class Canvas:
         else:
             keys, view.pending_fit = view.pending_fit, None
         around = find_bounds(box.rect for key, box in scene.boxes.items() if not keys or key in keys)
-        view.center, view.zoom = fit_view(around, size) if around else ((0.0, 0.0), 1.0)
+        view.center, view.zoom = fit_view(around, size, view.least_zoom) if around else ((0.0, 0.0), 1.0)
         self._last_fit = _FitState(keys, (view.center, view.zoom), size, scene, self._context.session.root)
 
     _last_fit = _FitState()

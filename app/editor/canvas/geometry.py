@@ -66,13 +66,16 @@ def find_bounds(rects: Iterable[Rect]) -> Rect | None:
     return min(lefts), min(tops), max(rights), max(bottoms)
 
 
-def fit_view(bounds: Rect, size: Point, max_zoom: float = 1.0) -> tuple[Point, float]:
-    """Center and zoom that show a rectangle with a margin in a panel of `size` (pixels at UI scale 1)."""
+def fit_view(bounds: Rect, size: Point, least_zoom: float = MIN_ZOOM) -> tuple[Point, float]:
+    """Center and zoom that show a rectangle with a margin in a panel of `size` (pixels at UI scale 1).
+
+    Of a rectangle that is too large for `least_zoom` they show the upper left part.
+    """
     left, top, right, bottom = bounds
     across, down = max(right - left, 1.0), max(bottom - top, 1.0)
     room = [max(side - 2 * min(_MARGIN, side * 0.1), 16.0) for side in size]
-    zoom = min(room[0] / across, room[1] / down, max_zoom)
-    return ((left + right) / 2, (top + bottom) / 2), min(max(zoom, MIN_ZOOM), MAX_ZOOM)
+    zoom = max(min(room[0] / across, room[1] / down, 1.0), least_zoom)
+    return reveal_rect(bounds, ((left + right) / 2, (top + bottom) / 2), zoom, size), zoom
 
 
 def reveal_rect(rect: Rect, center: Point, zoom: float, size: Point) -> Point:

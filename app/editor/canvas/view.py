@@ -23,6 +23,8 @@ class CanvasView(Struct):
     zoom: float = 1.0
     pending_fit: Collection[ElementId] | None = ()
     """Elements to fit into the view in the next frame: empty means all, None nothing."""
+    least_zoom: float = MIN_ZOOM
+    """The smallest zoom of the last fit."""
     pending_reveal: Collection[ElementId] = ()
     """Elements that must be in view in the next frame; the view moves no further than it needs to."""
     pointer: tuple[float, float] = (0.0, 0.0)
@@ -47,9 +49,9 @@ class CanvasView(Struct):
     refusal: str = ""
     """Why the dragged link does not fit the socket under the pointer."""
 
-    def fit(self, elements: Collection[ElementId] = ()) -> None:
-        """Fit the view to elements; none means all."""
-        self.pending_fit = elements
+    def fit(self, elements: Collection[ElementId] = (), least_zoom: float = MIN_ZOOM) -> None:
+        """Fit the view to elements; none means all. Of what is too large for a zoom, the upper left part is shown."""
+        self.pending_fit, self.least_zoom = elements, least_zoom
 
     def reveal(self, elements: Collection[ElementId]) -> None:
         """Move the view until elements can be seen."""

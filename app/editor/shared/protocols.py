@@ -37,8 +37,8 @@ class ElementView(Protocol):
         """Width and height of elements as drawn last, in canvas units."""
         ...
 
-    def fit(self, elements: Collection[ElementId] = ()) -> None:
-        """Bring elements into view; none means all."""
+    def fit(self, elements: Collection[ElementId] = (), least_zoom: float = 0.0) -> None:
+        """Bring elements into view, at a zoom or a larger one; none means all."""
         ...
 
     def reveal(self, elements: Collection[ElementId]) -> None:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
+from ...authoring.edits.element_id import NO_ELEMENT, ElementId
+from ...authoring.edits.layout import Place
 from ...authoring.edits.ports import is_viewable
 from ...graph import Port
 from ...language.translation import translate
@@ -26,6 +28,12 @@ if TYPE_CHECKING:
 
 _WIDTH, _GAP, _MARGIN = 320.0, 14.0, 10.0
 _PADDING = 14.0, 10.0
+READABLE_ZOOM = 0.8
+"""The zoom at which notes of a graph are as large as the smallest texts of the editor: 11 pixels."""
+
+NOTE_REACH = 130.0
+"""How far above its node a note begins, at most, in units of the canvas."""
+
 _OUT = 5.0
 """How far the frame is from its widget."""
 
@@ -54,6 +62,7 @@ class Coach:
         if progress.beginning is None:
             progress.beginning = now
             self._begin(step)
+            self._show_notes(step, is_first=progress.index == 0)
         elif step.is_done is not None and not progress.went_back and step.is_done(progress.beginning, now):
             if not self._context.interface.dragging:  # a drag ends first
                 self._go_on(progress.lesson)
@@ -72,6 +81,15 @@ class Coach:
         self._context.passes.marked = step.marks
         if step.panel is not None:
             self._context.commands.show_panel(step.panel)
+
+    def _show_notes(self, step: Step, *, is_first: bool) -> None:
+        """Show the node of a step and its notes large enough to be read, where a graph has notes."""
+        places = self._context.session.positions
+        if not any(key.is_note for key in places):
+            return
+        if is_first:
+            self._context.canvas.fit(least_zoom=READABLE_ZOOM)
+        self._context.canvas.reveal(find_noted(step.widget, places))
 
     def _go_on(self, lesson: Lesson) -> None:
         """Go to the next step. A lesson that ends is finished if all its tasks are solved."""
@@ -104,7 +122,8 @@ class Coach:
         wide = inner + 2 * _PADDING[0] * scale
         high = imgui.calc_text_size(sentence, False, inner).y + 2 * _PADDING[1] * scale + imgui.get_frame_height()
         high += 1.2 * SMALL * scale + 3 * imgui.get_style().item_spacing.y + 2.0 * scale
-        imgui.set_next_window_pos(place_card(rect, (wide, high), _find_area(), scale))
+        notes = [place for name, place in progress.widgets.items() if name.startswith("title comments.")]
+        imgui.set_next_window_pos(place_card(rect, (wide, high), _find_area(), scale, notes))
         imgui.set_next_window_size(ImVec2(wide, high))
         imgui.push_style_color(imgui.Col_.border, u32(self._context.palette.accent))
         imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(_PADDING[0] * scale, _PADDING[1] * scale))
@@ -170,6 +189,19 @@ class Coach:
         return re.sub(r"\{([\w.]+)\}", lambda match: display_shortcut(actions.shortcut(match[1])), sentence)
 
 
+def find_noted(widget: str, places: Mapping[ElementId, Place]) -> list[ElementId]:
+    """The element that a widget of the canvas belongs to, with the notes above it; nothing for other widgets."""
+    match = re.match(r"(title|pin in|pin out) (.+)", widget)
+    element = ElementId(match[2]) if match else NO_ELEMENT
+    if element not in places:
+        element = ElementId(element.rpartition(".")[0])  # the node of a pin
+    if element not in places:
+        return []
+    x, y = places[element]
+    above = [key for key, (left, top) in places.items() if key.is_note and left == x and 0.0 < y - top <= NOTE_REACH]
+    return [element, *above]
+
+
 def fit_frame(rect: Rect, widgets: Mapping[str, Rect], out: float) -> Rect | None:
     """The frame around a widget, `out` pixels away and inside of its panel; None if it is scrolled away."""
     x, y = (rect[0] + rect[2]) / 2, (rect[1] + rect[3]) / 2
@@ -186,10 +218,13 @@ def _overlaps(first: Rect, second: Rect) -> bool:
     return first[0] < second[2] and second[0] < first[2] and first[1] < second[3] and second[1] < first[3]
 
 
-def place_card(rect: Rect | None, size: tuple[float, float], area: Rect, scale: float) -> tuple[float, float]:
+def place_card(
+    rect: Rect | None, size: tuple[float, float], area: Rect, scale: float, notes: Sequence[Rect] = ()
+) -> tuple[float, float]:
     """Where the card goes: beside its widget, so that it hides nothing of it; into a widget as large as a panel.
 
-    Below comes first, as a reader looks there next; then above, at the right and at the left.
+    Below comes first, as a reader looks there next; then above, at the right and at the left. A place that hides none
+    of the notes is better.
     """
     width, height = size
     gap, margin = _GAP * scale, _MARGIN * scale
@@ -197,10 +232,14 @@ def place_card(rect: Rect | None, size: tuple[float, float], area: Rect, scale: 
     if rect is None:
         return high
     x, y = min(max(rect[0], low[0]), high[0]), min(max(rect[1], low[1]), high[1])
-    corners = ((x, rect[3] + gap), (x, rect[1] - gap - height), (rect[2] + gap, y), (rect[0] - gap - width, y))
-    for corner in corners:
-        if low[0] <= corner[0] <= high[0] and low[1] <= corner[1] <= high[1]:
-            return corner
+    end = min(max(rect[2] - width, low[0]), high[0])
+    places = [(left, top) for left in (x, end) for top in (rect[3] + gap, rect[1] - gap - height)]
+    places += [(rect[2] + gap, y), (rect[0] - gap - width, y)]
+    inside = [place for place in places if low[0] <= place[0] <= high[0] and low[1] <= place[1] <= high[1]]
+    cards = [(left, top, left + width, top + height) for left, top in inside]
+    free = [card[:2] for card in cards if not any(_overlaps(card, note) for note in notes)]
+    if free or inside:
+        return (free or inside)[0]
     return min(max(rect[2] - width - margin, low[0]), high[0]), y + margin
 
 

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from ...authoring.session import Session
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
+    from ..shared.protocols import ElementView
     from ..shared.window_commands import WindowCommands
     from ..toolkit.services import Services
     from ..workflows.documents import DocumentWorkflow
@@ -56,6 +57,7 @@ class TutorialContext(PanelContext, frozen=True):
     """The collaborators of the tutorials."""
 
     session: Session
+    canvas: ElementView
     dialogs: Dialogs
     actions: Actions
     commands: WindowCommands
@@ -64,12 +66,13 @@ class TutorialContext(PanelContext, frozen=True):
     progress: LessonProgress = field(default_factory=LessonProgress)
 
     @classmethod
-    def compose(cls, services: Services, documents: DocumentWorkflow) -> TutorialContext:
+    def compose(cls, services: Services, canvas: ElementView, documents: DocumentWorkflow) -> TutorialContext:
         """Pick what the tutorials use."""
         return cls(
             services.interface,
             services.log,
             services.session,
+            canvas,
             services.dialogs,
             services.actions,
             services.commands,

@@ -95,7 +95,7 @@ def compose_contexts(editor: Editor) -> Contexts:
         RendersContext.compose(editor, editor.timeline, flipbooks),
         StartContext.compose(editor, documents),
         TimelineContext.compose(editor, editor.timeline),
-        TutorialContext.compose(editor, documents),
+        TutorialContext.compose(editor, editor.canvas, documents),
         ViewerContext.compose(editor, editor.viewer, editor.timeline, editor.canvas, editor.code),
     )
     bind_actions(editor, contexts)

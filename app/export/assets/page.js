@@ -34,7 +34,8 @@ void main() {
 const OWN_PROGRAMS = {cover: COVER, present: {fragment: PRESENT}, decode: {fragment: DECODE}};
 
 async function inflate(text, stride) {
-    const bytes = Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
+    const letters = atob(text), bytes = new Uint8Array(letters.length);
+    for (let at = 0; at < bytes.length; ++at) bytes[at] = letters.charCodeAt(at);
     const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
     const planes = new Uint8Array(await new Response(stream).arrayBuffer());
     if (!stride) return planes.buffer;
@@ -70,6 +71,7 @@ class Page {
         const gl = this.canvas.getContext("webgl2", {alpha: false, antialias: false, preserveDrawingBuffer: true});
         if (!gl) throw new Error("this browser has no WebGL 2");
         this.gl = gl;
+        this.fence = null;
         const programs = Object.assign(this.content.programs, OWN_PROGRAMS);
         this.reader = new PageReader(gl, this.package, programs, number => this.blobs[number]);
         if (this.sheet) this.replaceMain();
@@ -97,7 +99,9 @@ class Page {
                 $("frame").value = this.frame;
                 this.isDirty = true;
             }
-            if (this.isDirty && this.reader && !this.gl.isContextLost()) this.show();
+            if (this.isDirty && this.reader && !this.gl.isContextLost())
+                if (this.package.draft && !this.firstPictureAt) this.showDraft();
+                else if (this.isDraftSeen()) this.show();
         } catch (fault) { fail(fault); }
         requestAnimationFrame(next => this.tick(next));
     }
@@ -117,6 +121,24 @@ class Page {
             this.rendered = this.frame;
         } else this.picture = reader.render(this.knobs, this.frame, true);
         this.isFirst = false;
+        this.reveal();
+    }
+
+    // Shows a small picture at once: on a slow device the whole one, which follows, takes seconds.
+    showDraft() {
+        this.picture = this.reader.renderDraft(this.rest, this.frame);
+        this.reveal();
+        this.fence = this.gl.fenceSync(this.gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+        this.framesToWait = 2; // of the screen, or the whole picture keeps the draft from it
+    }
+
+    isDraftSeen() {
+        if (this.fence && this.gl.getSyncParameter(this.fence, this.gl.SYNC_STATUS) !== this.gl.SIGNALED) return false;
+        this.fence = null;
+        return !(this.framesToWait-- > 0);
+    }
+
+    reveal() {
         this.shown = this.view(this.picture, "view");
         this.present();
         if (!this.firstPictureAt) {
@@ -370,7 +392,7 @@ async function open() {
     window.halation = new Page(content, blobs);
     for (const note of listNotes(content, window.halation.reader)) {
         const line = document.createElement("li");
-        line.textContent = note;
+        line.textContent = `${note[0].toUpperCase()}${note.slice(1)}.`;
         $("notes").append(line);
     }
 }

@@ -33,6 +33,18 @@ class PageReader extends PackageReader {
         });
     }
 
+    // The plan of knobs, or while `isDraft`, that of the small picture with which a page begins.
+    plan(knobs, isFirst) { return this.isDraft ? this.document.draft : super.plan(knobs, isFirst); }
+
+    // The picture of the graph as it is, small.
+    renderDraft(values, frame) {
+        this.isDraft = true;
+        const picture = this.render(values, frame, true);
+        this.isDraft = false;
+        this.history = {};
+        return picture;
+    }
+
     // Nobody asks yet how the programs come out, so the driver may compile many at once.
     render(values, frame, isFirst) {
         for (const {program} of this.plan({...values, frame}, isFirst).passes)

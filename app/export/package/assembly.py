@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Mapping, Sequence
 from functools import cache
 
@@ -21,6 +22,10 @@ from .planning import OUTPUT, Phase, PointPlanner
 from .sampling import Sample, is_irregular, is_number_table
 from .variants import Span, VariantAxis, choose_axes, find_axis
 
+LARGEST_DRAFT = 0.4
+"""The side of a draft at most, as a part of the picture's. Chosen by judgement: with a half, the first picture of a
+page of 480x270 comes no sooner on SwiftShader, which takes longer for the programs than for the pixels then."""
+
 
 class Package(Struct, frozen=True):
     """A package: its JSON without pixels, and the programs and bytes that it names by number."""
@@ -32,19 +37,20 @@ class Package(Struct, frozen=True):
     blobs: tuple[bytes, ...]
 
 
-def assemble_package(order: ExportOrder, game: str = "") -> Package:
+def assemble_package(order: ExportOrder, game: str = "", draft_pixels: int = 0) -> Package:
     """The package of one output of a graph. Raises the errors of compiling it.
 
-    `game` is what will draw it, if it draws over pictures alone: then meshes are refused.
+    `game` is what will draw it, if it draws over pictures alone: then meshes are refused. A larger picture gets a draft
+    of about `draft_pixels` pixels, which a slow device shows first.
     """
-    return _Assembly(order, game).assemble()
+    return _Assembly(order, game, draft_pixels).assemble()
 
 
 class _Assembly:
     """One package: the planner, and the parts so far."""
 
-    def __init__(self, order: ExportOrder, game: str) -> None:
-        self.order = order
+    def __init__(self, order: ExportOrder, game: str, draft_pixels: int) -> None:
+        self.order, self.draft_pixels = order, draft_pixels
         self.planner = PointPlanner(order, game)
         self.parts = SharedParts(self.planner.provider.load_pixels)
         self.samples: dict[str, dict[float, Sample]] = {}
@@ -82,7 +88,7 @@ class _Assembly:
         remarks = {**planner.remarks, **_describe_held(held_axes, irregular_names)}
         document = self._write_head((first, first if FRAME in held_names else last), axes, remarks)
         document |= self._write_display(opening)
-        document |= {"slots": self.parts.slots, "plans": plans}
+        document |= {"slots": self.parts.slots, "plans": plans, **self._write_draft(opening, phases[0])}
         frozen = ["it shows one frame: other frames need other passes"] if FRAME in held_names else []
         held_notes = [describe_control(name, remark) for name, remark in remarks.items()]
         notes = (*held_notes, *frozen, *_describe_skipped(axes), *self._describe_poor())
@@ -121,6 +127,15 @@ class _Assembly:
             return planner.sample_pairs(pair[0], pair[1], middle, rest, phase)
 
         return self._write_plan(VariantSamples(rest, by_knob, checks, sample_pairs), phase)
+
+    def _write_draft(self, opening: Plan, phase: Phase) -> Record:
+        """The first picture again, smaller; nothing if it would hardly be faster."""
+        width, height = opening.surfaces[opening.outputs[OUTPUT]].size
+        scale = math.sqrt(self.draft_pixels / (width * height))
+        if not 0.0 < scale <= LARGEST_DRAFT:
+            return {}
+        draft = self.planner.plan_draft(scale)
+        return {"draft": self._write_plan(VariantSamples(draft, {}, [], lambda _first, _second: ([], [], [])), phase)}
 
     def _write_plan(self, samples: VariantSamples, phase: Phase) -> Record:
         """A plan; slots are numbered as `take_apart` lists them."""

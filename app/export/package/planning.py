@@ -68,14 +68,15 @@ class PointPlanner:
         planner = Planner()
 
         def plan(graph: Graph, point: Point) -> Sample:
-            frame, order = round(point.get(FRAME, self.first)), self.order
-            request = Request({OUTPUT: order.target}, self._bindings, order.size, frame=frame, memories=memories)
-            plan = planner.plan(graph, request, self.provider, target=TARGET)
-            _refuse_unsuitable(plan, self.game)
+            plan = self._plan(planner, graph, memories, frame=round(point.get(FRAME, self.first)))
             self.remembers = self.remembers or bool(plan.memories)
             return take_apart(plan, self.provider.load_pixels)
 
         return Phase(memories, GraphSampler(self.graph, self.controls, plan))
+
+    def plan_draft(self, scale: float) -> Sample:
+        """The first frame of the graph as it is, smaller. Raises the errors of planning the graph."""
+        return take_apart(self._plan(Planner(), self.graph, {}, self.first, scale), self.provider.load_pixels)
 
     def take_along(
         self, rest: Sample, point: Point, knob: Knob, places: Sequence[float], phase: Phase
@@ -132,6 +133,15 @@ class PointPlanner:
         )
         rows = [[phase.take({**middle, first_name: x, second_name: y}) for y in ys] for x in xs]
         return xs, ys, [[sample if sample.structure == rest.structure else None for sample in row] for row in rows]
+
+    def _plan(
+        self, planner: Planner, graph: Graph, memories: Mapping[Port, Memory], frame: int, scale: float = 1.0
+    ) -> Plan:
+        target, size = {OUTPUT: self.order.target}, self.order.size
+        request = Request(target, self._bindings, size, scale, frame=frame, memories=memories)
+        plan = planner.plan(graph, request, self.provider, target=TARGET)
+        _refuse_unsuitable(plan, self.game)
+        return plan
 
     def _find_frames(self) -> tuple[int, int]:
         """The frames that the package shows."""

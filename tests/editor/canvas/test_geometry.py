@@ -78,6 +78,8 @@ def test_fit_shows_all_in_the_middle_and_never_enlarges() -> None:
     assert center == (1000.0, 250.0)
     assert 2000 * zoom < 1000 and 2000 * zoom > 800
     assert fit_view((0.0, 0.0, 10.0, 10.0), (1000.0, 800.0))[1] == 1.0
+    (x, y), zoom = fit_view((0.0, 0.0, 1000.0, 5000.0), (1000.0, 800.0), least_zoom=0.8)
+    assert zoom == 0.8 and x == 500.0 and y - 400.0 / zoom == pytest.approx(-48.0 / zoom), "the upper part"
 
 
 def test_zoom_keeps_what_is_under_the_pointer() -> None:
