@@ -218,7 +218,12 @@ class DeferredLighting(Filter):
         )
         near = draw.point("deferred_lighting_nearness", place=place, result=Field())
         coverage = draw(
-            "deferred_lighting_coverage", normal=normal, near=near, overlap=COVERAGE_REACH, result=Vector(width=3)
+            "deferred_lighting_coverage",
+            self.albedo,
+            normal=normal,
+            near=near,
+            overlap=COVERAGE_REACH,
+            result=Vector(width=3),
         )
         return {"normal": normal, "place": place, "near": near, "coverage": coverage}
 

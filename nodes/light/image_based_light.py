@@ -93,7 +93,12 @@ class ImageBasedLight(Filter):
             "image_based_light_nearness", self.normal, self.depth, result=Field(), linked=draw.is_linked(self.depth)
         )
         coverage = draw(
-            "image_based_light_coverage", self.normal, near=near, overlap=COVERAGE_REACH, result=Vector(width=3)
+            "image_based_light_coverage",
+            self.normal,
+            self.albedo,
+            near=near,
+            overlap=COVERAGE_REACH,
+            result=Vector(width=3),
         )
         diffuse = draw(
             "image_based_light_diffuse",

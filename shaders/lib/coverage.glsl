@@ -28,6 +28,10 @@ const float COVERAGE_OWN = 0.02;
 const float COVERAGE_NEAREST = 0.9, COVERAGE_FARTHEST = 1.1;
 const float COVERAGE_DIFFERENT = 0.02;  // least square of the difference between two surfaces: 8 degrees
 
+const float COVERAGE_ALIKE = 0.005;     // colors with less contrast, a tenth of both, say nothing
+const float COVERAGE_DOUBT = 0.05;      // a color that is farther from the mixes of two than by this part of their distance
+                                        // is another texture, or that of a third surface
+
 // The surfaces of a pixel: how much the front one covers, and a pixel near by that lies wholly in each. `front` and
 // `back` are the pixel itself, with coverage 1, where there is only one.
 struct Coverage { float front_share; ivec2 front, back; };
@@ -57,6 +61,18 @@ float coverage_share(vec3 mean, vec3 back) {
     float toward = back == vec3(0.0) ? 0.0 : -2.0 * dot(apart, back);
     float share = back == vec3(0.0) ? length(mean) : dot(apart, apart) / max(toward, 1e-6);
     return clamp(share, 0.0, 1.0);
+}
+
+// How much the front surface covers, where the color of the pixel is a mix of those of both surfaces: then color knows it
+// better than a normal, which also turns within a pixel. `share` is what the normal says. All are premultiplied.
+float coverage_color_share(float share, vec4 color, vec4 front, vec4 back) {
+    vec4 apart = front - back;
+    float span = dot(apart, apart), contrast = span / max(dot(front, front) + dot(back, back), 1e-12);
+    float mixed = clamp(dot(color - back, apart) / max(span, 1e-12), 0.0, 1.0);
+    vec4 off = color - back - mixed * apart;
+    float doubt = sqrt(dot(off, off) / max(span, 1e-12));
+    float trust = clamp(contrast / COVERAGE_ALIKE - 1.0, 0.0, 1.0) * clamp(2.0 - doubt / COVERAGE_DOUBT, 0.0, 1.0);
+    return mix(share, mixed, trust);
 }
 
 // The ways to the pixels that stand for the front surface (xy) and the one behind (zw); 0 if there is only one.
@@ -129,6 +145,13 @@ vec3 coverage_front(Coverage shares) {
     vec3 mean = finite(normal_at(pixel)), back = coverage_normal(shares.back), front = coverage_normal(shares.front);
     vec3 alone = mean - (1.0 - shares.front_share) * back + COVERAGE_OWN * front;
     return dot(alone, alone) > 0.0 ? normalize(alone) : front;
+}
+
+// How much shorter the normal of the front surface is than those that it is the mean of: 1 where there is one. Light on
+// matte surfaces grows with the cosine, so its mean over several normals is that of their mean, as it is.
+float coverage_turned(Coverage shares) {
+    vec3 alone = finite(normal_at(pixel)) - (1.0 - shares.front_share) * coverage_normal(shares.back);
+    return clamp(length(alone) / max(shares.front_share, COVERAGE_OWN), 0.0, 1.0);
 }
 
 // The part of the color of this pixel that is that of the front surface, from the colors of both beside it. What they

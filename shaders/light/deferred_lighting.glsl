@@ -36,7 +36,15 @@ vec4 deferred_lighting_place(float depth, vec3 position, vec4 rays[3], bool plac
 
 float deferred_lighting_nearness(vec4 place) { return place.w; }
 
-vec3 deferred_lighting_coverage() { return coverage_found(); }
+vec3 deferred_lighting_coverage() {
+    vec3 stored = coverage_found();
+    Coverage shares = coverage_of(stored);
+    for (int rounds = coverage_is_mixed(shares) ? 1 : 0; rounds > 0; --rounds)
+        stored.x = coverage_color_share(
+            stored.x, finite(albedo_at(pixel)), finite(albedo_at(shares.front)), finite(albedo_at(shares.back))
+        );
+    return stored;
+}
 
 vec3 deferred_lighting_normal(const vec4 rows[3]) { return normal_from_depth(rows); }
 
@@ -129,11 +137,13 @@ void deferred_lighting_sum(
     }
 }
 
-// One surface of a pixel: the pixel that stands for it, its place and normal, and its part of the color.
+// One surface of a pixel: the pixel that stands for it, its place and normal, its part of the color, and how much less
+// light falls on it because its normal turns within the pixel.
 struct LitPart {
     ivec2 at;
     vec3 place, normal;
     vec4 color;
+    float turned;
 };
 
 // What reflects light at a surface: its colors, and how rough it is.
@@ -149,12 +159,13 @@ bool deferred_lighting_part(int k, bool mixed, Coverage shares, vec4 color, cons
     vec4 place = place_at(part.at);
     part.color = color;
     part.normal = unit_normal(normal_at(part.at));
+    part.turned = 1.0;
     for (int rounds = mixed ? 1 : 0; rounds > 0; --rounds) {
         part.color = coverage_part(
             color, finite(albedo_at(shares.front)), finite(albedo_at(shares.back)), shares.front_share
         );
         if (seen) place.xyz = coverage_place(rays, place.xyz, part.normal);
-        if (k == 0) part.normal = coverage_front(shares);
+        if (k == 0) part.normal = coverage_front(shares), part.turned = coverage_turned(shares);
         else part.color = color - part.color;
     }
     part.place = place.xyz;
@@ -195,10 +206,10 @@ vec4 deferred_lighting_lit(
         LitMaterial material = deferred_lighting_material(part, mapped, metal, roughness, specular, seen, eye);
         LitSurface surface = material.surface;
         vec3 sky = ambient * clamp(finite(occlusion_at(part.at)), 0.0, 1.0);
-        vec3 fallen = PI * sky, mirrored = sky * ggx_sky(surface.f0, surface.nv, surface.alpha);
+        vec3 fallen = vec3(0.0), mirrored = sky * ggx_sky(surface.f0, surface.nv, surface.alpha);
         ivec2 tile = tiled ? part.at / DEFERRED_LIGHTING_TILE : ivec2(0);
         deferred_lighting_sum(model, texels, tile, surface, fallen, mirrored);
-        vec3 lit = share.x * material.scatter * fallen / PI + share.y * mirrored;
+        vec3 lit = share.x * material.scatter * (sky + part.turned * fallen / PI) + share.y * mirrored;
         sum += premultiplied(vec4(lit, material.color.a));
     }
     return finite(vec4(sum.rgb, color.a));
@@ -221,7 +232,7 @@ vec4 deferred_lighting_areas(
         vec3 fallen = vec3(0.0), mirrored = vec3(0.0);
         for (int light = 0; light < count; ++light)
             area_add(area_light(light, surface.place), lobes, surface.f0, fallen, mirrored);
-        vec3 lit = share.x * material.scatter * fallen + share.y * mirrored;
+        vec3 lit = share.x * part.turned * material.scatter * fallen + share.y * mirrored;
         before.rgb += premultiplied(vec4(lit, material.color.a)).rgb;
     }
     return finite(before);
@@ -255,7 +266,7 @@ vec4 deferred_lighting_limited(
             area_add(area_light(light, surface.place), lobes, surface.f0, matte, shiny);
             fallen += mask[lamps + light] * matte, mirrored += mask[lamps + light] * shiny;
         }
-        vec3 lit = share.x * material.scatter * fallen + share.y * mirrored;
+        vec3 lit = share.x * part.turned * material.scatter * fallen + share.y * mirrored;
         before.rgb += premultiplied(vec4(lit, material.color.a)).rgb;
     }
     return finite(before);
