@@ -89,17 +89,7 @@ class ImageBasedLight(Filter):
         camera = draw.camera(self.camera)
         rays = camera.inverse if camera else (0.0,) * 12
         mirror, sky, lobes = self._blur_surroundings(draw)
-        near = draw.point(
-            "image_based_light_nearness", self.normal, self.depth, result=Field(), linked=draw.is_linked(self.depth)
-        )
-        coverage = draw(
-            "image_based_light_coverage",
-            self.normal,
-            self.albedo,
-            near=near,
-            overlap=COVERAGE_REACH,
-            result=Vector(width=3),
-        )
+        near, coverage = self._find_surfaces(draw)
         diffuse = draw(
             "image_based_light_diffuse",
             self.normal,
@@ -138,6 +128,21 @@ class ImageBasedLight(Filter):
         )
         out = draw.point("image_based_light", diffuse=diffuse, reflection=reflection)
         return {"out": out, "diffuse": diffuse, "reflection": reflection}
+
+    def _find_surfaces(self, draw: Draw) -> tuple[Drawn, Drawn]:
+        """How near the surfaces are, and how much of each pixel the front one covers."""
+        near = draw.point(
+            "image_based_light_nearness", self.normal, self.depth, result=Field(), linked=draw.is_linked(self.depth)
+        )
+        coverage = draw(
+            "image_based_light_coverage",
+            self.normal,
+            self.albedo,
+            near=near,
+            overlap=COVERAGE_REACH,
+            result=Vector(width=3),
+        )
+        return near, coverage
 
     def _blur_surroundings(self, draw: Draw) -> tuple[Drawn, Drawn, list[Drawn]]:
         """The surroundings that a mirror sees, a small picture of them for matte light, and one for each lobe."""
