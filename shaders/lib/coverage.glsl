@@ -28,6 +28,8 @@ const float COVERAGE_OWN = 0.02;
 const float COVERAGE_NEAREST = 0.9, COVERAGE_FARTHEST = 1.1;
 const float COVERAGE_DIFFERENT = 0.02;  // least square of the difference between two surfaces: 8 degrees
 
+// Choices: with half or twice each of these two numbers less than 1 % of the pixels of night_relight change by more than
+// 1 / 255.
 const float COVERAGE_ALIKE = 0.005;     // colors with less contrast, a tenth of both, say nothing
 const float COVERAGE_DOUBT = 0.05;      // a color that is farther from the mixes of two than by this part of their distance
                                         // is another texture, or that of a third surface
