@@ -78,8 +78,11 @@ class PassesPage(Struct):
     def _list_facts(self) -> Iterable[tuple[str, str]]:
         plan, programs = self.plan, len({render_pass.shader for render_pass in self.plan.passes})
         yield "Device", f"{plan.target.renderer}, OpenGL {plan.target.version / 100:.1f}, {plan.target.form} passes"
-        yield "Passes", f"{len(plan.passes)} by {programs} programs, {1000.0 * sum(self.seconds):.1f} ms together"
-        yield "Memory", f"{len(plan.surfaces)} pictures in {len(plan.slots)} textures, {format_bytes(plan.peak_bytes)}"
+        time = f"{1000.0 * sum(self.seconds):.1f} ms together"
+        worked = f"{len(plan.passes)} by {_count(programs, 'program')}, {time}"
+        yield "Passes", worked if plan.passes else "none: the output is what is read"
+        pictures, textures = _count(len(plan.surfaces), "picture"), _count(len(plan.slots), "texture")
+        yield "Memory", f"{pictures} in {textures}, {format_bytes(plan.peak_bytes)}"
         yield "Frames", describe_frames(plan)
         yield "Outputs", ", ".join(f"{name} (#{number})" for name, number in plan.outputs.items())
         yield (
@@ -185,3 +188,8 @@ def _describe_shader(shader: Shader) -> str:
     code = highlight(shader.source, GLShaderLexer(), HtmlFormatter(nowrap=True))
     lines = shader.source.count("\n") + 1
     return f"<details><summary>GLSL, {lines} lines</summary><pre>{code}</pre></details>"
+
+
+def _count(number: int, noun: str) -> str:
+    """A number of things, such as `1 texture`."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

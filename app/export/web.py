@@ -13,6 +13,7 @@ from ..document.about import find_about
 from ..resources.atomic_write import write_text_atomically
 from .order import ExportOrder, ExportReport
 from .package import Package, assemble_package
+from .package.curves import Record
 from .package.dialects import write_es300
 from .package.specialization import specialize_functions
 from .shipped_files import read_shipped_text
@@ -58,7 +59,9 @@ def make_page(package: Package, order: ExportOrder) -> str:
         for fragment, vertex in package.programs
     ]
     strides = _find_strides(package)
-    content = json.dumps({"document": document, "programs": programs, "notes": list(package.notes)})
+    written = {**document, "slots": [_turn_curves(slot) for slot in document["slots"]]}
+    parts = {"document": written, "programs": programs, "notes": list(package.notes)}
+    content = json.dumps(parts, separators=(",", ":"))
     packed = {
         "content": b64encode(zlib.compress(content.encode(), 9)).decode(),
         "blobs": [[strides[at], _pack(blob, strides[at])] for at, blob in enumerate(package.blobs)],
@@ -73,6 +76,19 @@ def make_page(package: Package, order: ExportOrder) -> str:
     }
     # In one pass: a description may hold such marks itself.
     return re.sub(r"/\*([A-Z]+)\*/", lambda mark: filled[mark[1]], read_shipped_text("page.html"))
+
+
+def _turn_curves(slot: Record) -> Record:
+    """A slot whose curves have columns instead of rows, one for each number; one that stays the same is written once.
+
+    Of a table of the outlines of a text that moves in time, most numbers stay the same.
+    """
+    curves: list[Record] = []
+    for curve in slot.get("curves", ()):
+        others = {name: part for name, part in curve.items() if name != "values"}
+        columns = [column[0] if len(set(column)) == 1 else column for column in zip(*curve["values"], strict=True)]
+        curves.append({**others, "columns": columns})
+    return {**slot, "curves": curves} if curves else slot
 
 
 def _find_strides(package: Package) -> list[int]:

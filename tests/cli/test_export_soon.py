@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import moderngl
@@ -10,6 +11,7 @@ import pytest
 from exported_looks import LOOK, VALIDATOR, open_page, plan_presets, validate
 from halation.export.package.dialects import COVERING_VERTEX, write_es300
 from halation.export.package.specialization import specialize_functions
+from halation.export.web import _turn_curves  # pyright: ignore[reportPrivateUsage]
 
 CHOOSING = """#version 410 core
 uniform sampler2D t0;
@@ -82,6 +84,25 @@ def test_a_large_page_has_a_draft_of_the_same_programs(cli, graphs, tmp_path: Pa
         drafts.append(content["document"].get("draft"))
     draft, none = drafts
     assert none is None and draft["surfaces"][draft["output"]]["size"] == [240, 135]
+
+
+def test_a_page_has_the_curves_of_a_folder_by_columns(cli, graphs, tmp_path: Path) -> None:
+    for name in ("look.html", "look"):
+        words = () if name.endswith("html") else ("--to", "glsl")
+        assert cli("export", graphs(**LOOK), *words, "-o", tmp_path / name).code == 0
+    slots = json.loads((tmp_path / "look" / "passes.json").read_text())["slots"]
+    content, _ = open_page((tmp_path / "look.html").read_text())
+    curves = list(zip(list_curves(slots), list_curves(content["document"]["slots"]), strict=True))
+    assert len(curves) > 5
+    for rows, columns in curves:
+        repeated = [each if isinstance(each, list) else [each] * len(rows["at"]) for each in columns["columns"]]
+        assert np.transpose(repeated).tolist() == rows["values"] and columns["at"] == rows["at"]
+    still = {"base": [1.0, 2.0], "curves": [{"knob": "frame", "at": [1.0, 2.0], "values": [[3.0, 4.0], [5.0, 4.0]]}]}
+    assert _turn_curves(still)["curves"] == [{"knob": "frame", "at": [1.0, 2.0], "columns": [(3.0, 5.0), 4.0]}]
+
+
+def list_curves(slots: list[dict]) -> list[dict]:
+    return [curve for slot in slots for curve in slot.get("curves", ())]
 
 
 def test_a_folder_has_no_draft(cli, graphs, tmp_path: Path) -> None:

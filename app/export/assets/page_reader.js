@@ -1,7 +1,14 @@
 // The reader of a package as a page needs it: also on devices with half floats alone, and for sliders that are dragged.
 
+// A page has a column for each number of a curve, or the number itself where it stays the same; the reader takes rows.
+function turnCurves(curve) {
+    if (curve.columns)
+        curve.values = curve.at.map((_, row) => curve.columns.map(column => column.length ? column[row] : column));
+}
+
 class PageReader extends PackageReader {
     constructor(gl, document, programs, loadBlob) {
+        document.slots.forEach(({curves = []}) => curves.forEach(turnCurves));
         super(gl, document, programs, loadBlob);
         [this.canStoreFloats, this.canFilterFloats] = this.extensions.map(Boolean);
         if (!this.canStoreFloats && !gl.getExtension("EXT_color_buffer_half_float"))
