@@ -93,6 +93,27 @@ def test_a_page_says_where_its_device_places_corners_roughly(cli, browser: Brows
     assert said and browser.run("halation.gl.getParameter(halation.gl.SUBPIXEL_BITS)") == 4
 
 
+WITHOUT_FLOATS = """
+    const getExtension = WebGL2RenderingContext.prototype.getExtension;
+    WebGL2RenderingContext.prototype.getExtension = function (name) {
+        return MISSING.includes(name) ? null : getExtension.call(this, name);
+    };
+"""
+
+
+def test_a_device_with_half_floats_alone_says_so(cli, browser: Browser, tmp_path: Path) -> None:
+    """Such as many phones: the picture is the same to the eye."""
+    page, picture = tmp_path / "page.html", tmp_path / "ours.png"
+    assert cli("export", "soft_bloom", "-o", page, "--size", SIZE).code == 0
+    assert cli("render", "soft_bloom", "-o", picture, "--size", SIZE, "--dither", "none").code == 0
+    browser.prepare("const MISSING = ['EXT_color_buffer_float', 'OES_texture_float_linear'];" + WITHOUT_FLOATS)
+    show(browser, page)
+    notes = browser.run("document.getElementById('notes').innerText").splitlines()
+    assert "This device has half floats only: dark gradients may show steps." in notes
+    difference, flip = compare(picture, take(browser, tmp_path, {}))
+    assert difference < 2.01 and flip < 0.01 and not browser.messages
+
+
 FIRST_SIZE = """
     const look = () => {
         if (window.halation?.firstPictureAt) window.firstSize = halation.picture.size;
