@@ -36,6 +36,9 @@ with Mesa 22.3."""
 DEVICE_MODULE = "halation.renderer.opengl.device"
 """Loaded where the process may have opened OpenGL, whose threads would be missing in a copy."""
 
+_LOADER_END = 127
+"""The exit code with which the loader of libraries (glibc's) ends a process that it has no memory for: no command's."""
+
 _LINGERING = 0.25
 """Seconds for which the system may still list a thread that has ended: measured, more than 20 ms in one of a thousand
 where twelve processes share four processors."""
@@ -239,8 +242,8 @@ def run_limited(work: Callable[[], int]) -> int:
         code = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
     if code < 0 and requests:
         raise KeyboardInterrupt
-    if code < 0:
-        raise explain_memory_limit(name_signal(-code))
+    if code < 0 or code == _LOADER_END:
+        raise explain_memory_limit(name_signal(-code) if code < 0 else f"code {code}")
     return code
 
 

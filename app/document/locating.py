@@ -19,7 +19,8 @@ def locate_graph(name: str | Path) -> Path:
     where the name of a preset or a preset's file may be meant.
     """
     path = find_graph_or_preset(name)
-    if path.name == str(name) and path.is_dir() and (preset := find_preset(path.name)):
+    is_folder = path.name == str(name) and os.path.lexists(path) and path.is_dir()
+    if is_folder and (preset := find_preset(path.name)):
         return preset
     if not os.path.lexists(path) and (hint := _suggest_preset(path)):
         raise DocumentError(str(name), "", f"there is no such file{hint}", rule="unreadable-graph")

@@ -84,7 +84,7 @@ def name_signal(number: int) -> str:
 
 
 def explain_memory_limit(name: str) -> RenderError:
-    """The error of a process with limited memory that ended by a signal."""
+    """The error of a process with limited memory that ended by a signal or with a code."""
     return RenderError(
         f"the driver ended the process ({name}), as drivers do without enough memory: allow more (ulimit -v), "
         "or render a smaller picture with --scale or --size"

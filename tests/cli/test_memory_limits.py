@@ -90,6 +90,16 @@ def test_every_command(tmp_path: Path, words, mebibytes):
     check_end(tmp_path, words, mebibytes)
 
 
+def test_the_loader_of_libraries_ends_a_process_without_a_signal():
+    """Where a thread has no memory for its own variables, glibc prints ABORT and ends the process with 127."""
+    code = "from halation.cli import program; program.run = lambda words: 127; print(program.run_process([]))"
+    ended = subprocess.run(
+        [sys.executable, "-P", "-c", code], capture_output=True, text=True, timeout=60, preexec_fn=limit(4000)
+    )
+    assert ended.stdout == "1\n"
+    assert ended.stderr.startswith("halation: the driver ended the process (code 127), as drivers do without enough")
+
+
 def test_a_limited_command_can_be_interrupted(tmp_path: Path):
     """The signal reaches the process that works, although another one was sent it."""
     write_files(tmp_path)

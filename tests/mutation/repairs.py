@@ -258,7 +258,7 @@ REPAIRS = (
     Repair(
         "any thread renders",
         "app/scripting/threads.py",
-        "if is_main else _shared_thread(os.getpid())",
+        "if is_main else _get_thread(os.getpid())",
         "if is_main else DrawingThread(threading.main_thread().ident or 0)",
         "tests/test_misuse.py::test_any_thread_renders",
     ),
