@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from ...media.color_reduction import reduce_colors
+from ...color.reduction import reduce_colors
 from ...media.denoising import denoise
 
 Array = np.ndarray

@@ -9,7 +9,8 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-Array = np.ndarray
+from .transforms import Array, decode_srgb, encode_srgb
+
 ProgressReport = Callable[[float], bool]
 
 _SAMPLES = 1 << 15
@@ -33,23 +34,12 @@ def reduce_colors(
     """
     codes = pictures["codes"].astype(np.float32)
     numbers = np.array(str(settings["colors"]).split(), np.float64).reshape(-1, 3)
-    palette = encode(numbers) if len(numbers) else find_palette(codes, int(settings["count"]))
+    palette = encode_srgb(np.maximum(numbers, 0.0)) if len(numbers) else find_palette(codes, int(settings["count"]))
     if settings["diffused"]:
         indices = diffuse_errors(codes[..., :3], palette, report)
     else:
         indices = _find_nearest(pictures.get("pattern", codes)[..., :3], palette)
-    return np.concatenate([decode(palette)[indices], codes[..., 3:]], axis=2).astype(np.float32)
-
-
-def encode(light: Array) -> Array:
-    """Scene light as sRGB codes."""
-    light = np.maximum(light, 0.0)
-    return np.where(light <= 0.0031308, 12.92 * light, 1.055 * np.maximum(light, 1e-9) ** (1.0 / 2.4) - 0.055)
-
-
-def decode(codes: Array) -> Array:
-    """SRGB codes as scene light."""
-    return np.where(codes <= 0.04045, codes / 12.92, ((codes + 0.055) / 1.055) ** 2.4)
+    return np.concatenate([decode_srgb(palette)[indices], codes[..., 3:]], axis=2).astype(np.float32)
 
 
 def find_palette(codes: Array, count: int) -> Array:
