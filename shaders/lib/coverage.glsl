@@ -123,6 +123,17 @@ Coverage coverage_of(vec3 stored) {
 // True for a pixel that two surfaces share.
 bool coverage_is_mixed(Coverage shares) { return shares.front != shares.back; }
 
+// What coverage_found() returns, with the share by color as well, in passes that also read `albedo`.
+vec3 coverage_found_by_color() {
+    vec3 stored = coverage_found();
+    Coverage shares = coverage_of(stored);
+    for (int rounds = coverage_is_mixed(shares) ? 1 : 0; rounds > 0; --rounds)
+        stored.x = coverage_color_share(
+            stored.x, finite(albedo_at(pixel)), finite(albedo_at(shares.front)), finite(albedo_at(shares.back))
+        );
+    return stored;
+}
+
 // True for a pixel that two surfaces share, where its depth is that of one of them, and each of them covers a pixel
 // beside it wholly. Things thinner than two pixels cover none.
 bool coverage_is_sure(Coverage shares) {
@@ -142,18 +153,21 @@ Coverage coverage_seen(Coverage shares) {
     return Coverage(shares.front_share, front ? pixel : shares.front, front ? shares.back : pixel);
 }
 
+// The part of the mean normal of this pixel that is that of the front surface.
+vec3 coverage_alone(Coverage shares) {
+    return finite(normal_at(pixel)) - (1.0 - shares.front_share) * coverage_normal(shares.back);
+}
+
 // The normal of the front surface alone. Where it covers little, its own normal helps against noise.
 vec3 coverage_front(Coverage shares) {
-    vec3 mean = finite(normal_at(pixel)), back = coverage_normal(shares.back), front = coverage_normal(shares.front);
-    vec3 alone = mean - (1.0 - shares.front_share) * back + COVERAGE_OWN * front;
+    vec3 front = coverage_normal(shares.front), alone = coverage_alone(shares) + COVERAGE_OWN * front;
     return dot(alone, alone) > 0.0 ? normalize(alone) : front;
 }
 
 // How much shorter the normal of the front surface is than those that it is the mean of: 1 where there is one. Light on
 // matte surfaces grows with the cosine, so its mean over several normals is that of their mean, as it is.
 float coverage_turned(Coverage shares) {
-    vec3 alone = finite(normal_at(pixel)) - (1.0 - shares.front_share) * coverage_normal(shares.back);
-    return clamp(length(alone) / max(shares.front_share, COVERAGE_OWN), 0.0, 1.0);
+    return clamp(length(coverage_alone(shares)) / max(shares.front_share, COVERAGE_OWN), 0.0, 1.0);
 }
 
 // The part of the color of this pixel that is that of the front surface, from the colors of both beside it. What they

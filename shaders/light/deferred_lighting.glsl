@@ -36,15 +36,7 @@ vec4 deferred_lighting_place(float depth, vec3 position, vec4 rays[3], bool plac
 
 float deferred_lighting_nearness(vec4 place) { return place.w; }
 
-vec3 deferred_lighting_coverage() {
-    vec3 stored = coverage_found();
-    Coverage shares = coverage_of(stored);
-    for (int rounds = coverage_is_mixed(shares) ? 1 : 0; rounds > 0; --rounds)
-        stored.x = coverage_color_share(
-            stored.x, finite(albedo_at(pixel)), finite(albedo_at(shares.front)), finite(albedo_at(shares.back))
-        );
-    return stored;
-}
+vec3 deferred_lighting_coverage() { return coverage_found_by_color(); }
 
 vec3 deferred_lighting_normal(const vec4 rows[3]) { return normal_from_depth(rows); }
 

@@ -123,15 +123,7 @@ float image_based_light_nearness(vec3 normal, float depth, bool linked) {
     return linked ? nearness(depth) : float(length(finite(normal)) > half_covered);
 }
 
-vec3 image_based_light_coverage() {
-    vec3 stored = coverage_found();
-    Coverage shares = coverage_of(stored);
-    for (int rounds = coverage_is_mixed(shares) ? 1 : 0; rounds > 0; --rounds)
-        stored.x = coverage_color_share(
-            stored.x, finite(albedo_at(pixel)), finite(albedo_at(shares.front)), finite(albedo_at(shares.back))
-        );
-    return stored;
-}
+vec3 image_based_light_coverage() { return coverage_found_by_color(); }
 
 // One surface of a pixel: the normal, and its part of the color with alpha for its share of the pixel.
 struct ImageBasedLightSurface { ivec2 at; vec3 normal; vec4 part; };
