@@ -11,8 +11,6 @@ import numpy as np
 
 from .transforms import Array, decode_srgb, encode_srgb
 
-ProgressReport = Callable[[float], bool]
-
 _SAMPLES = 1 << 15
 """The most pixels that a palette is found from: four times as many change the error by less than a hundredth."""
 
@@ -24,7 +22,7 @@ _BLOCK = 1 << 16
 
 
 def reduce_colors(
-    pictures: Mapping[str, Array], settings: Mapping[str, str | float | bool], report: ProgressReport
+    pictures: Mapping[str, Array], settings: Mapping[str, str | float | bool], report: Callable[[float], bool]
 ) -> Array:
     """The picture `codes` in the colors of a palette, scene-linear; alpha as it is.
 
@@ -93,7 +91,7 @@ def _pick(colors: Array, palette: Array) -> Array:
     return np.argmin((palette * palette).sum(axis=1) - 2.0 * colors @ palette.T, axis=1)
 
 
-def diffuse_errors(codes: Array, palette: Array, report: ProgressReport) -> Array:
+def diffuse_errors(codes: Array, palette: Array, report: Callable[[float], bool]) -> Array:
     """The number of the color of each pixel by error diffusion (Floyd and Steinberg 1976), row by row, left to right.
 
     A pixel waits for its left neighbor and three above it, so all with the same x + 2 y are done at once: they lie side
