@@ -110,6 +110,8 @@ def locate_graph(text: str) -> Path:
 
 def expand_preset(text: str) -> Path:
     """The path that the user named, or the file of a preset if there is no such path and a preset has this name."""
+    if os.path.lexists(text):  # also a folder
+        return Path(text)
     from ..custom_nodes.plugins import find_graph_or_preset
 
     return find_graph_or_preset(text)

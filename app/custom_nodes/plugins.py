@@ -63,12 +63,13 @@ def find_refused_plugin(name: str) -> Plugin | None:
 
 
 def find_graph_or_preset(name: str | Path) -> Path:
-    """The path that the user named, or the file of a preset if there is no such path and a preset has this name.
+    """The path that the user named, or the file of a preset if there is no such file and a preset has this name.
 
-    Raises DocumentError for the name of a preset whose plug-in cannot be loaded.
+    A folder is no graph, so one that has the name of a preset does not hide it. Raises DocumentError for the name of a
+    preset whose plug-in cannot be loaded.
     """
     path = Path(name)
-    if path.name != str(name) or os.path.lexists(path):
+    if path.name != str(name) or (os.path.lexists(path) and not path.is_dir()):
         return path
     if preset := find_preset(path.name):
         return preset

@@ -15,13 +15,9 @@ from ..graph import did_you_mean
 def locate_graph(name: str | Path) -> Path:
     """The file of `find_graph_or_preset`, which is there, or is a path whose reader says that nothing is there.
 
-    A folder is no graph, so one that has the name of a preset does not hide it. Raises DocumentError with a suggestion
-    where the name of a preset or a preset's file may be meant.
+    Raises DocumentError with a suggestion where the name of a preset or a preset's file may be meant.
     """
     path = find_graph_or_preset(name)
-    is_folder = path.name == str(name) and os.path.lexists(path) and path.is_dir()
-    if is_folder and (preset := find_preset(path.name)):
-        return preset
     if not os.path.lexists(path) and (hint := _suggest_preset(path)):
         raise DocumentError(str(name), "", f"there is no such file{hint}", rule="unreadable-graph")
     return path
@@ -33,8 +29,12 @@ def _suggest_preset(path: Path) -> str:
         return f"; for the preset write {path.stem}" if find_preset(path.stem) else ""
     if path.name != str(path) or not path.name.replace(".", "_").isidentifier():
         return ""
-    namespace, dot, _ = path.name.partition(".")
-    hint = did_you_mean(path.name, name_presets()) or "; halation demo --list prints them"
+    return f", and no preset has this name{did_you_mean(path.name, name_presets()) or _explain_missing(path.name)}"
+
+
+def _explain_missing(name: str) -> str:
+    """Where a preset comes from that has no name like it."""
+    namespace, dot, _ = name.partition(".")
     if dot and all(plugin.namespace != namespace for plugin in plugins()):
-        hint = f": no plug-in '{namespace}' is installed, and its presets come with it"
-    return f", and no preset has this name{hint}"
+        return f": no plug-in '{namespace}' is installed, and its presets come with it"
+    return "; halation demo --list prints them"

@@ -8,6 +8,7 @@ import shutil
 import halation as hal
 import pytest
 from halation import presets
+from halation.custom_nodes.plugins import find_graph_or_preset
 from halation.errors import DocumentError
 from halation.nodes import catalogue, plugins
 
@@ -92,6 +93,8 @@ def test_a_folder_of_that_name_does_not(cli, empty):
     (empty / "soft_bloom").mkdir()
     assert cli("explain", "soft_bloom").code == 0
     assert "bloom" in hal.load("soft_bloom").nodes
+    assert find_graph_or_preset("soft_bloom") == BLOOM  # as a server opens it
+    assert cli("check", "soft_bloom", "--json").json["graphs"] == []  # all graphs of the folder
 
 
 @pytest.mark.parametrize(
@@ -142,6 +145,7 @@ def test_presets_of_plug_ins(cli, empty, fresh_plugins, monkeypatch, tmp_path):
     assert cli("explain", "acme_haze.ball").code == 0
     assert "acme_haze.ball" in cli("demo", "--list").out.split()
     assert cli("explain", "ball").code == cli("explain", "other.ball").code == 3
+    assert "did you mean 'acme_haze.ball'?" in cli("explain", "acme_haz.ball").err
 
 
 def test_the_list(cli):
