@@ -26,12 +26,11 @@ def read_cosines() -> tuple[float, ...]:
 def pack_area_light(light: Light, gain: float) -> tuple[float, ...]:
     """A light as four texels: its place, its radiance and its two half axes, and a fourth number of each.
 
-    That of the place is 1 / reach^2, that of the radiance the number of the kind; those of the axes are their lengths.
+    That of the place is the reach, that of the radiance the number of the kind; those of the axes are their lengths.
     The radiance is the intensity divided by the area that the light shows to what is straight in front of it.
     """
     (along, width), (across, height) = ((axis, math.hypot(*axis)) for axis in light.half_axes)
-    window = 1.0 / light.reach**2 if light.reach > 0.0 else 0.0
     area = (math.pi if light.kind is LightKind.DISC else 4.0) * width * height
     red, green, blue = (gain * light.gain * part / area for part in light.color)
     kind = float(AREA_KINDS.index(light.kind))
-    return (*light.place, window, red, green, blue, kind, *along, width, *across, height)
+    return (*light.place, max(light.reach, 0.0), red, green, blue, kind, *along, width, *across, height)

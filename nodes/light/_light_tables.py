@@ -96,13 +96,13 @@ def _sort_into_tiles(draw: Draw, place: Drawn, lights: list[Light], texels: int)
 def _pack_light(light: Light, gain: float) -> tuple[float, ...]:
     """What the GLSL reads of a light, as three texels.
 
-    The place, or the way to a sun; 1 / reach^2. The color times the intensity; the radius, -1 for a sun. What takes the
-    way to the light to a cosine between the cones of a spot.
+    The place, or the way to a sun; the reach, 0 for none. The color times the intensity; the radius, -1 for a sun. What
+    takes the way to the light to a cosine between the cones of a spot.
     """
     kind = light.kind
     red, green, blue = (gain * light.gain * part for part in light.color)
     x, y, z = light.aim
-    window = 1.0 / light.reach**2 if light.reach > 0.0 and kind is not LightKind.SUN else 0.0
+    reach = 0.0 if kind is LightKind.SUN else max(light.reach, 0.0)
     size = max(light.size, _LEAST_SIZE) if kind is LightKind.SPHERE else -1.0 if kind is LightKind.SUN else 0.0
     cone = (0.0, 0.0, 0.0, 1.0)
     if kind is LightKind.SPOT:
@@ -110,7 +110,7 @@ def _pack_light(light: Light, gain: float) -> tuple[float, ...]:
         scale = 1.0 / max(math.cos(min(light.inner, light.outer)) - outer, _LEAST_CONE)
         cone = (-x * scale, -y * scale, -z * scale, -outer * scale)
     place = (-x, -y, -z) if kind is LightKind.SUN else light.place
-    return (*place, window, red, green, blue, size, *cone)
+    return (*place, reach, red, green, blue, size, *cone)
 
 
 def _ball(light: Light, endless: float = math.inf) -> tuple[float, float, float, float]:

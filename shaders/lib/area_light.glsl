@@ -6,6 +6,7 @@
 // and equally bright everywhere, so nothing but its outline counts.
 
 #include "lib/brdf.glsl"
+#include "lib/light_window.glsl"
 #include "lib/pi.glsl"
 
 const int AREA_RECTANGLE = 0, AREA_DISC = 1;  // a tube is neither
@@ -48,7 +49,7 @@ AreaLight area_light(int row, vec3 place) {
     AreaLight lamp;
     lamp.kind = int(glow.w), lamp.middle = origin.xyz - place, lamp.along = first_axis.xyz, lamp.across = second_axis.xyz;
     lamp.deep = vec3(0.0), lamp.arc = 0.0, lamp.far = ivec2(0);
-    float reach = dot(lamp.middle, lamp.middle) * origin.w, window = max(1.0 - reach * reach, 0.0);
+    float window = light_window(dot(lamp.middle, lamp.middle), origin.w);
     lamp.radiance = glow.rgb * window * window;
     if (lamp.kind <= AREA_DISC) {
         if (dot(cross(lamp.along, lamp.across), lamp.middle) >= 0.0) lamp.radiance = vec3(0.0);

@@ -8,6 +8,7 @@
 #include "lib/geometry.glsl"
 #include "lib/light_cookie.glsl"
 #include "lib/light_shadow.glsl"
+#include "lib/light_window.glsl"
 #include "lib/pi.glsl"
 #include "lib/solid.glsl"
 #include "lib/working.glsl"
@@ -89,7 +90,7 @@ void deferred_lighting_add(int model, int light, LitSurface at, inout vec3 falle
     float size = max(glow.w, 0.0);
     vec3 way = glow.w < 0.0 ? origin.xyz : origin.xyz - at.place;
     float square = max(dot(way, way), max(size * size, 1e-8));
-    float reach = square * origin.w, window = max(1.0 - reach * reach, 0.0);
+    float window = light_window(square, origin.w);
     if (window == 0.0) return;
     vec4 cone = lights_at(ivec2(2, light));
     vec3 l = way / sqrt(square);

@@ -20,8 +20,8 @@ _WHOLE_DOUBLES = 1e15
 _SAME = 1e-7
 """Difference of numbers, as a part of the largest, that is rounding: half of what a float of 24 bits resolves."""
 LINE = 2e-5
-"""How far a sample may lie beside the polygon that leaves it out, as a part of the largest number: a hundredth of
-`BEND`, so that leaving out costs nothing against sampling."""
+"""How far a sample may lie beside the polygon that leaves it out, as a part of its largest number, or of each number of
+a table: a hundredth of `BEND`, so that leaving out costs nothing against sampling."""
 
 PLACED = 5e-6
 """How far a number of a matrix may lie beside its curve, as a part of the largest of its row of samples: 0.005 pixels
@@ -29,6 +29,9 @@ of a picture of 1000: devices place corners at 256ths."""
 
 _CUBIC = 4
 """The samples that a cubic goes through."""
+
+_ROUNDED_ENDS = 2.0 * _SAME
+"""How far a line between two samples is off because these are rounded, as a part of the larger."""
 
 _SMOOTH = 1e-3
 """How far a sample may lie beside the cubic of its neighbors in a smooth curve: half of `BEND`, which a corner exceeds.
@@ -88,7 +91,7 @@ def write_slot(
             knob_gaps = [gaps[name] for gaps in jumps if name in gaps]
             if knob_gaps and not is_snapped:
                 places, rows = _split(places, rows, np.any(knob_gaps, axis=0))
-            keep = list(range(len(places))) if is_snapped else simplify(places, rows / largest)
+            keep = list(range(len(places))) if is_snapped else simplify(places, rows, is_table=slot.is_table)
             if slot.is_matrix and not is_snapped:
                 filled_places, filled_rows = fill_gaps(places, rows)
                 if len(filled_places) > len(places):
@@ -212,9 +215,11 @@ def _follow_cubic(places: Array, rows: Array, x: Array) -> Array:
     return weights @ rows
 
 
-def simplify(places: Array, rows: Array) -> list[int]:
+def simplify(places: Array, rows: Array, *, is_table: bool = False) -> list[int]:
     """The places that a polygon needs: those on the line between their neighbors are left out."""
-    largest = max(float(np.abs(rows).max(initial=0.0)), _LEAST_NUMBER)
+    sizes = np.abs(rows)
+    least = LEAST_SCALE if is_table else _LEAST_LARGEST
+    scales = np.maximum(sizes if is_table else sizes.max(axis=1, keepdims=True, initial=0.0), least)
     keep = [0]
     for at in range(1, len(places) - 1):
         first, last = keep[-1], at + 1
@@ -222,7 +227,8 @@ def simplify(places: Array, rows: Array) -> list[int]:
         inside = np.arange(first + 1, last)
         shares = (places[inside] - places[first]) / (places[last] - places[first])
         lines = rows[first] + shares[:, None] * (rows[last] - rows[first])
-        if not 0.0 < share < 1.0 or np.abs(lines - rows[inside]).max(initial=0.0) > LINE * largest:
+        allowed = LINE * scales[inside] + _ROUNDED_ENDS * np.maximum(scales[first], scales[last])
+        if not 0.0 < share < 1.0 or (np.abs(lines - rows[inside]) > allowed).any():
             keep.append(at)
     return [*keep, len(places) - 1]
 
@@ -237,7 +243,7 @@ def find_needed_places(samples: Mapping[float, Sample], places: list[float]) -> 
         if len({len(sample.slots[number].numbers) for sample in group}) > 1:
             return places
         rows = np.array([sample.slots[number].numbers for sample in group])
-        needed.update(simplify(np.array(places), rows / _find_largest(rows, is_table=group[0].slots[number].is_table)))
+        needed.update(simplify(np.array(places), rows, is_table=group[0].slots[number].is_table))
     return [places[at] for at in sorted(needed)]
 
 

@@ -30,7 +30,8 @@ width."""
 BEND = 2e-3
 """How far a number may lie beside the line between two samples, as a part of the largest number of its slot: half a
 step of 8 bits for what scales a color. A table mixes units, such as places of lights and how many there are: there each
-number counts by the largest that it has along the knob."""
+number counts by itself. It counts by what it is there, not by its largest: 1 / reach^2 has a pole, beside which all
+else would be nothing."""
 
 JUMP = 0.02
 """How far the numbers of a table lie beside the line between neighbors, as such a part, where they jump.
@@ -118,8 +119,8 @@ def _is_whole(value: Uniform) -> bool:
     return all(isinstance(part, int) for part in (value if isinstance(value, tuple) else (value,)))
 
 
-class TableScales:
-    """The largest that each number of a table has in all samples so far of the same passes and as many numbers."""
+class _TableScales:
+    """The largest that each number of a table has in all samples of the same passes and as many numbers."""
 
     def __init__(self) -> None:
         self._largest: dict[tuple[object, int, int], Array] = {}
@@ -145,7 +146,6 @@ class KnobSampler(Struct):
     is_dense: bool = False
     """Whether all whole numbers of the range are sampled: keys of an animation may be anywhere."""
     samples: dict[float, Sample] = field(default_factory=dict[float, Sample])
-    scales: TableScales = field(default_factory=TableScales)
 
     def sample_range(self) -> dict[float, Sample]:
         """Samples from low to high, close enough for lines between them."""
@@ -168,7 +168,6 @@ class KnobSampler(Struct):
         sample = self._take(x)
         if sample is not None:
             self.samples[x] = sample
-            self.scales.add(sample)
         return sample
 
     def _replace_special(self, places: list[float]) -> None:
@@ -212,10 +211,10 @@ class KnobSampler(Struct):
 
     def _is_straight(self, first: Sample, middle: Sample, last: Sample) -> bool:
         """True if all numbers of the middle sample lie between those of the others."""
-        for number, (a, b, c) in enumerate(zip(first.slots, middle.slots, last.slots, strict=True)):
+        for a, b, c in zip(first.slots, middle.slots, last.slots, strict=True):
             if not len(a.numbers) == len(b.numbers) == len(c.numbers):
                 return False
-            if _measure_bend(a, b, c, self.scales.find(middle, number)) > BEND:
+            if _measure_bend(a, b, c, np.maximum(np.abs(a.numbers), np.abs(c.numbers))) > BEND:
                 return False
         return True
 
@@ -232,7 +231,7 @@ def is_irregular(samples: Mapping[float, Sample]) -> bool:
 
     Between two such tables there is nothing, and the nearest one is that of another value.
     """
-    jumps, scales = 0, TableScales()
+    jumps, scales = 0, _TableScales()
     for sample in samples.values():
         scales.add(sample)
     for (x, a), (y, b), (z, c) in zip(*(list(samples.items())[at:] for at in range(3)), strict=False):
@@ -254,6 +253,6 @@ def _measure_bend(first: Slot, middle: Slot, last: Slot, scale: Array, share: fl
     a, c = first.numbers, last.numbers
     aside = np.abs(a + share * (c - a) - middle.numbers)
     if middle.is_table:
-        return float((aside / scale).max(initial=0.0))
+        return float((aside / np.maximum(scale, LEAST_SCALE)).max(initial=0.0))
     largest = max(np.abs(a).max(initial=0.0), np.abs(c).max(initial=0.0), 1e-9)  # above 0, where all are 0
     return float(aside.max(initial=0.0) / largest)

@@ -1,0 +1,64 @@
+"""Numbers of packages between the samples that their curves go through: tables of lights, and curves with a pole."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from exr_files import read
+from halation.compiler.knobs import Knob, Point
+from halation.export.package.curves import read_slot, write_slot
+from halation.export.package.parts import VariantSamples
+from halation.export.package.sampling import KnobSampler, Sample, Slot
+from halation.presets import paths
+
+SIZE = "120x68"
+
+
+@pytest.mark.parametrize("is_table", [True, False])
+def test_what_is_far_from_a_pole_counts(is_table: bool) -> None:
+    """1 / reach^2 is a thousand times larger at the low end of a slider than in its middle, and 0 for no reach at all.
+
+    `exp` comes from no pole: it grows by a factor of 20,000.
+    """
+
+    def take(point: Point) -> Sample:
+        reach = point["reach"]
+        numbers = np.array([1.0 / reach**2 if reach > 0.0 else 0.0]), np.array([np.exp(reach)])
+        whole = np.concatenate(numbers)
+        slots = (whole,) if is_table else numbers
+        made = tuple(Slot(each, is_whole=False, is_table=is_table) for each in slots)
+        return Sample(None, 0, made)  # pyright: ignore[reportArgumentType]
+
+    samples = KnobSampler(take, {}, Knob("reach", 3.6, 0.0, 10.0)).sample_range()
+    assert len(samples) <= 200
+    by_knob = VariantSamples(take({"reach": 3.6}), {"reach": samples}, [], lambda a, b: ([], [], []))
+    places = range(1 if is_table else 2)
+    records = [write_slot(at, by_knob.rest, by_knob.by_knob, [], by_knob.find_jumps([*places])) for at in places]
+    for reach in np.linspace(1.0, 10.0, 997):
+        found = np.concatenate([read_slot(record, {"reach": reach}) for record in records])
+        np.testing.assert_allclose(found, [1.0 / reach**2, np.exp(reach)], rtol=5e-3)
+
+
+@pytest.mark.parametrize("reach", [0.02, 3.0, 8.5])
+def test_a_page_moves_the_reach_of_many_lights(cli, tmp_path: Path, reach: float) -> None:
+    """The preset whose swarm of lights reached too far at all values but its own."""
+    (preset,) = (path for path in paths() if path.stem == "night_relight")
+    graph = json.loads(preset.read_text())
+    graph["controls"] = {"reach": graph["controls"]["reach"]}
+    for each in graph["inputs"].values():
+        each["file"] = str(preset.parent / each["file"])
+    graph["nodes"]["camera"]["values"]["path"] = graph["inputs"]["beauty"]["file"]
+    look, folder, ours, theirs = (tmp_path / name for name in ("look.json", "look", "ours.exr", "theirs.npy"))
+    look.write_text(json.dumps(graph))
+    assert cli("export", look, "--to", "glsl", "-o", folder, "--size", SIZE).code == 0
+    words = ("--precision", "float", "--set", f"reach={reach}", "--size", SIZE)
+    assert cli("render", look, "-o", ours, *words).code == 0
+    reader = [sys.executable, folder / "read_package.py", folder, theirs, f"reach={reach}"]
+    subprocess.run(reader, check=True, timeout=100)
+    picture = read(ours)
+    assert np.abs(np.load(theirs) - picture).max() <= 2e-3 * np.abs(picture).max()
