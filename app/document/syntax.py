@@ -26,7 +26,7 @@ _LARGE_NUMBER = re.compile(r"NaN|Infinity|[eE]\+?\d{3}|\d{200}")
 _MANY_DIGITS, _LONG = re.compile(r"\d{200}"), 200
 """What msgspec reads although it may be larger than any number of 64 bits, and the least letters that it has."""
 _ESCAPED_HALF = re.compile(r"\\u[dD][89a-fA-F]")
-_HALF = re.compile(r"[\ud800-\udfff]")
+_HALF = r"[\ud800-\udfff]"
 """Texts that may be half of a surrogate pair."""
 _STEPS = {ord("{"): 1, ord("["): 1, ord("}"): -1, ord("]"): -1}
 _NO_BRACKETS = bytes(set(range(256)) - {*_STEPS})
@@ -151,7 +151,7 @@ def _has_half(text: str) -> bool:
     """True if half of a surrogate pair may be in a text."""
     if "\\u" in text and _ESCAPED_HALF.search(text):
         return True
-    return not text.isascii() and _HALF.search(text) is not None
+    return not text.isascii() and re.search(_HALF, text) is not None
 
 
 def _shape_fault(outline: str) -> str | None:

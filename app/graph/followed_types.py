@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Protocol
 
@@ -10,7 +11,7 @@ from halation.nodes import Field, Kind, Node, Socket, Value
 
 from ..errors import GraphError
 from .conversion import conversion, make_socket
-from .model import Port
+from .model import Port, class_signature
 
 _NOTHING = Port("", "")
 
@@ -61,6 +62,17 @@ def _is_field(graph: _SourceGraph, port: Port) -> bool:
     except GraphError:
         return False
     return socket is not None and socket.kind is Kind.FIELD
+
+
+@lru_cache(4096)
+def fits_as_declared(start: type[Node], output: str, end: type[Node], socket: str) -> bool:
+    """True if an output of all nodes of a class fits an input or a value of all those of another, as they declare it.
+
+    Most links do, and a graph may have 100,000. False says nothing: an output may follow an input to another type.
+    """
+    source, signature = class_signature(start).outputs.get(output), class_signature(end)
+    target = signature.inputs.get(socket) or (signature.values.get(socket) if signature.pointwise else None)
+    return source is not None and target is not None and conversion(source, target) is None
 
 
 def find_type_fault(

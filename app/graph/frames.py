@@ -56,9 +56,11 @@ VIDEO_ENDINGS = frozenset(
 )
 """File name extensions of videos."""
 
-_RANGE = re.compile(r"(-?[0-9]+)\s*(?:-\s*(-?[0-9]+)\s*(?:[xX]\s*([0-9]+))?)?")
-_PLACE = re.compile(r"(?P<hashes>#+)|%(?:0(?P<printf>[1-9][0-9]*))?d|\$F(?![A-Za-z_])(?P<houdini>[0-9]*)")
-_BLANK_PADDED = re.compile(r"%([1-9][0-9]*)d")
+_RANGE = r"(-?[0-9]+)\s*(?:-\s*(-?[0-9]+)\s*(?:[xX]\s*([0-9]+))?)?"
+_PLACE = r"(?P<hashes>#+)|%(?:0(?P<printf>[1-9][0-9]*))?d|\$F(?![A-Za-z_])(?P<houdini>[0-9]*)"
+_BLANK_PADDED = r"%([1-9][0-9]*)d"
+"""Compiled when first used: most graphs have no frame numbers, and `halation check` counts milliseconds."""
+
 _NUMBER = re.compile(rf"-?[0-9]{{1,{_MAX_PADDING + _DIGITS}}}")
 
 
@@ -136,7 +138,7 @@ class Pattern(Struct, frozen=True, dict=True):
     def parse(text: str) -> Pattern | None:
         """The pattern of a path, or None for a path without a number. Raises UsageError if the number is too wide."""
         name = _file_name(text)
-        places = list(_PLACE.finditer(name))
+        places = list(re.finditer(_PLACE, name))
         if not places:
             return None
         edges = [0, *chain.from_iterable(place.span() for place in places), len(name)]
@@ -189,8 +191,8 @@ def add_frame_number(path: str) -> str:
     """A path with a place for the frame number: `out.exr` gives `out.####.exr`."""
     name = _file_name(path)
     folder = path[: len(path) - len(name)]
-    if _BLANK_PADDED.search(name):
-        return folder + _BLANK_PADDED.sub(r"%0\1d", name)
+    if re.search(_BLANK_PADDED, name):
+        return folder + re.sub(_BLANK_PADDED, r"%0\1d", name)
     stem, dot, ending = name.rpartition(".")
     return f"{folder}{stem}.####.{ending}" if stem else f"{folder}{dot}{ending}.####"
 
@@ -226,7 +228,7 @@ def _parse_entry(entry: str, text: str) -> range:
     subject = f"frames '{_shorten(text)}'"
     if not entry:
         raise UsageError(f"{subject}: a frame is missing before or after a comma: write them {_EXAMPLE}")
-    parts = _RANGE.fullmatch(entry)
+    parts = re.fullmatch(_RANGE, entry)
     if parts is None:
         raise UsageError(f"{subject}: '{_shorten(entry)}' is not a frame or a range: write them {_EXAMPLE}")
     for number in filter(None, parts.groups()):

@@ -12,7 +12,7 @@ from .model import Unknown
 from .names import did_you_mean
 from .rules import Rule
 
-_REQUIREMENT = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*==[A-Za-z0-9][A-Za-z0-9.+!_-]*")
+_REQUIREMENT = r"[A-Za-z0-9][A-Za-z0-9._-]*==[A-Za-z0-9][A-Za-z0-9.+!_-]*"
 """A package and its version, as pip takes them. Anything else in a file is not repeated as a command to type."""
 
 
@@ -37,7 +37,7 @@ def _find_plugin_fault(item: Unknown) -> str:
     package = item.raw.get("package")
     if package is None and "." not in item.type:
         return ""
-    requirement = package if isinstance(package, str) and _REQUIREMENT.fullmatch(package) else ""
+    requirement = package if isinstance(package, str) and re.fullmatch(_REQUIREMENT, package) else ""
     namespace = item.type.partition(".")[0]
     name = _normalize(requirement.partition("==")[0])
     installed = [

@@ -11,7 +11,8 @@ from typing import Generic, TypeVar
 from halation.nodes import Node
 
 from ..errors import GraphError
-from .model import Port, Unknown
+from .followed_types import fits_as_declared
+from .model import Port
 from .names import INPUTS, OUTPUTS
 
 _REPORTED_LOOPS = 8
@@ -167,18 +168,6 @@ class Wired(Generic[T]):
         """Why a link from `source` cannot feed `target`, loops aside, or None."""
         raise NotImplementedError
 
-    def _classify_link(self, source: Port, target: Port) -> Hashable:
-        """What decides whether a link can be: the classes of both nodes, or their ids where a class does not say all
-        about a node, and their sockets.
-        """
-        start, end = self.nodes.get(source.node), self.nodes.get(target.node)
-        return (
-            type(start) if isinstance(start, Node | Unknown) else source.node,
-            source.socket,
-            type(end) if isinstance(end, Node | Unknown) else target.node,
-            target.socket,
-        )
-
     @cached_property
     def link_faults(self) -> Mapping[Port, str]:
         """Why links cannot be, by target, loops aside."""
@@ -186,15 +175,13 @@ class Wired(Generic[T]):
 
     def find_link_faults(self) -> Iterator[tuple[Port, str]]:
         """What `link_faults` holds, one after the other: there may be 100,000, and nobody reads them all."""
-        valid_classes = set[Hashable]()
         for target, source in self.links.items():
-            link_class = self._classify_link(source, target)
-            if link_class in valid_classes:
+            start, end = self.nodes.get(source.node), self.nodes.get(target.node)
+            are_nodes = isinstance(start, Node) and isinstance(end, Node)
+            if are_nodes and fits_as_declared(type(start), source.socket, type(end), target.socket):
                 continue
             if fault := self.link_fault(source, target):
                 yield target, fault
-            else:
-                valid_classes.add(link_class)
 
     def order(self) -> tuple[str, ...]:
         """All nodes, each after those that feed it; the same for equal graphs. Raises GraphError that names a loop."""

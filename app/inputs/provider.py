@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from hashlib import blake2b
+from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -356,10 +356,13 @@ def _changes_numbers(picture: Picture, layer: str, sandbox: Sandbox) -> bool:
 
 
 def _array_fingerprint(array: Array) -> str:
-    """A fingerprint of the pixels: the same array may hold others in the next render."""
+    """A fingerprint of the pixels: the same array may hold others in the next render.
+
+    Processors of the last years have instructions for SHA-256, which make it twice as fast as other hashes of Python.
+    """
     import numpy as np
 
-    digest = blake2b(np.ascontiguousarray(array).data, digest_size=16).hexdigest()
+    digest = sha256(np.ascontiguousarray(array).data).hexdigest()[:32]
     return f"array {array.shape} {array.dtype} {digest}"
 
 

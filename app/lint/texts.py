@@ -56,12 +56,12 @@ NOT_CANONICAL = Rule(
 READING = (UNREADABLE_GRAPH, CONFLICT_MARKERS, SYNTAX, DOUBLE_KEY, SCHEMA, NEWER_VERSION, MISSING_GROUP)
 RULES = (*READING, OLD_VERSION, NOT_CANONICAL)
 
-_MARKER = re.compile(r"^(<{7}|>{7}|\|{7})( |$)", re.MULTILINE)
+_MARKER = r"(?m)^(<{7}|>{7}|\|{7})( |$)"
 
 
 def explain_fault(fault: DocumentError, text: str) -> tuple[Problem, int]:
     """The problem of a text that is not a graph, and its line, or 0 if the line is unknown."""
-    if fault.rule == SYNTAX.name and (marker := _MARKER.search(text)):
+    if fault.rule == SYNTAX.name and (marker := re.search(_MARKER, text)):
         words = "a git merge is unfinished here: keep one side, and remove the lines of <, = and >"
         return Problem("", "", words, CONFLICT_MARKERS), text.count("\n", 0, marker.start()) + 1
     rule = next((rule for rule in READING if rule.name == fault.rule), SCHEMA)

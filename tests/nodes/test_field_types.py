@@ -12,6 +12,7 @@ from halation.nodes.channel.combine import Combine
 from halation.nodes.color.invert import Invert
 from halation.nodes.distort.crop import Crop
 from halation.nodes.distort.transform import Transform
+from halation.nodes.matte.fill_holes import FillHoles
 from halation.nodes.merge.mix_images import MixImages
 from scipy.ndimage import gaussian_filter
 
@@ -130,6 +131,20 @@ def test_a_filter_without_a_link_says_what_would_make_it_a_field():
     graph = Graph().add("blur", GaussianBlur()).add_output("matte", Output(Kind.FIELD))
     with pytest.raises(GraphError, match=r"'blur\.out' is a Field where a Field is linked to 'blur\.image'"):
         graph.connect(Port("blur", "out"), Port("outputs", "matte"))
+
+
+def test_each_of_two_filters_of_one_class_is_checked_for_itself():
+    graph = Graph().add_input("matte", Input(Kind.FIELD)).add_input("image", Input(Kind.IMAGE))
+    nodes = {"soft": GaussianBlur(), "blurred": GaussianBlur(), "filled": FillHoles(), "wrong": FillHoles()}
+    links = {
+        Port("soft", "image"): Port("inputs", "matte"),
+        Port("filled", "matte"): Port("soft", "out"),
+        Port("blurred", "image"): Port("inputs", "image"),
+        Port("wrong", "matte"): Port("blurred", "out"),
+    }
+    faults = Graph(nodes=nodes, links=links, inputs=graph.inputs).link_faults
+    assert [f"{target}" for target in faults] == ["wrong.matte"]
+    assert "an Image does not fit a Field" in faults[Port("wrong", "matte")]
 
 
 def test_a_long_row_of_filters_is_checked_in_linear_time():

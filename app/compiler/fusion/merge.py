@@ -42,12 +42,14 @@ def split_by_result(program: LoweredProgram, fused: PassGroup) -> tuple[PassGrou
 
 def _extract_part(program: LoweredProgram, fused: PassGroup, root: int) -> PassGroup:
     """The part of a pass that an operation needs."""
-    needed, reads = {root}, set[Ref]()
+    needed, reads, all_reads = {root}, set[Ref](), frozenset(fused.reads)
     for index in reversed(fused.members):
         if index in needed:
-            inputs = set(program.ops[index].reads())
-            needed |= {ref.op for ref in inputs if ref not in fused.reads}
-            reads |= inputs
+            for ref in program.ops[index].reads():
+                if ref in all_reads:
+                    reads.add(ref)
+                else:
+                    needed.add(ref.op)
     return PassGroup(
         tuple(index for index in fused.members if index in needed),
         tuple(ref for ref in fused.reads if ref in reads),

@@ -36,15 +36,25 @@ def describe(item: object) -> object:
 
     Values that are equal have one description: 1 and 1.0 as constants, 0.0 and -0.0 anywhere.
     """
-    return _find_describer(type(item))(item)
+    return _DESCRIBERS[type(item)](item)
 
 
-@cache
+class _Describers(dict[type[Any], Callable[[Any], object]]):
+    """What describes the values of each class, found when first asked for. A look-up costs no call of a function."""
+
+    def __missing__(self, kind: type[Any]) -> Callable[[Any], object]:
+        self[kind] = _find_describer(kind)
+        return self[kind]
+
+
+_DESCRIBERS = _Describers()
+
+
 def _find_describer(kind: type[Any]) -> Callable[[Any], object]:
     if kind is float:
         return _ADD_ZERO
     if kind is tuple:
-        return lambda parts: tuple(map(describe, parts))
+        return _describe_tuple
     if kind is Ref:
         return lambda _: "ref"
     if kind is UniformConstant:
@@ -52,6 +62,10 @@ def _find_describer(kind: type[Any]) -> Callable[[Any], object]:
     if kind not in _PLAIN and issubclass(kind, Struct):
         return _make_describer(kind)
     return (lambda item: item) if kind in _PLAIN else repr
+
+
+def _describe_tuple(parts: tuple[object, ...]) -> object:
+    return [_DESCRIBERS[type(part)](part) for part in parts]
 
 
 def _make_describer(kind: type[Struct]) -> Callable[[Any], object]:
@@ -63,34 +77,43 @@ def _make_describer(kind: type[Struct]) -> Callable[[Any], object]:
     are read as they are spelled: to evaluate them takes 5 % of a short render. What is not recognized is described by
     its value, which gives the same.
     """
-    names, identity, spelled = kind.__struct_fields__, identity_fields(kind), _spell_types(kind)
+    class_name, names, identity, spelled = (
+        kind.__name__,
+        kind.__struct_fields__,
+        identity_fields(kind),
+        _spell_types(kind),
+    )
     defaults = dict(zip(reversed(names), reversed(kind.__struct_defaults__), strict=False))
-    excluded = [place for place, name in enumerate(names) if name not in identity]
+    excluded = [place for place, name in enumerate(names, 1) if name not in identity]
     floats: list[tuple[int, object]] = []
-    rest: list[tuple[int, Callable[[Any], object]]] = []
-    for place, name in enumerate(names):
+    float_tuples: list[int] = []
+    rest: list[int] = []
+    for place, name in enumerate(names, 1):
         words = set(spelled[name].replace("tuple[", "").replace("]", "").split(", "))
         if spelled[name] == "float":
             floats.append((place, defaults.get(name)))
         elif name in identity and not words <= _PLAIN_WORDS:
-            rest.append((place, _describe_floats if spelled[name] == "tuple[float, ...]" else describe))
+            (float_tuples if spelled[name] == "tuple[float, ...]" else rest).append(place)
     last = len(names)
     while last and spelled[names[last - 1]] == "float" and names[last - 1] in defaults.keys() & set(identity):
         last -= 1
     last_defaults = tuple(defaults[name] for name in names[last:])
-    first_floats = [(place, default) for place, default in floats if place < last]
+    first_floats = [(place, default) for place, default in floats if place <= last]
 
     def describe_fields(item: Struct) -> object:
         fields = structs.astuple(item)
         usual = fields[last:] == last_defaults
-        parts: list[Any] = [kind.__name__, *(fields[:last] if usual else fields)]
+        parts: list[Any] = [class_name, *(fields[:last] if usual else fields)]
         for place in excluded:
-            parts[place + 1] = None
+            parts[place] = None
         for place, default in first_floats if usual else floats:
-            number = parts[place + 1]
-            parts[place + 1] = None if number == default else number + 0.0
-        for place, describe_value in rest:
-            parts[place + 1] = describe_value(parts[place + 1])
+            number = parts[place]
+            parts[place] = None if number == default else number + 0.0
+        for place in float_tuples:
+            parts[place] = _describe_floats(parts[place])
+        for place in rest:
+            value = parts[place]
+            parts[place] = _DESCRIBERS[type(value)](value)
         return parts
 
     return describe_fields

@@ -65,7 +65,7 @@ from ..ir import (
     UniformConstant,
 )
 from ..library import Library
-from . import constants, formulas, fourier, gaussian, padding, transforms
+from . import constants, fourier, gaussian, padding, transforms
 from .blurs import BlurBuilder
 from .node_code import PassNode, check_options
 from .node_inputs import DrawnPicture, NodeInputs, NodeResources
@@ -216,6 +216,8 @@ class Recorder(OutlineDraw):
         )
 
     def formula(self, text: str, **names: Argument) -> Drawn:
+        from . import formulas  # few graphs have any
+
         program, clock = formulas.write_formula(text, tuple(names), self._owner), (0.0, 0.0, 0.0)
         if formulas.reads_time(text):
             clock = (float(self.frame), (self.frame - self.start) / self.rate, self.rate)

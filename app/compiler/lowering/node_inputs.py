@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from halation.nodes import CameraModel, ColorChange, Kind, Node, Render, Scene, Size, Socket, TextBlock, TypesetText
 from msgspec import Struct, field
@@ -13,7 +13,9 @@ from ...resources.color_program import ColorProgram
 from ...resources.mesh import Mesh
 from ...resources.picture import Picture
 from ..ir import Operand, PictureShape, PlannedObject, Ref
-from .text_tokens import TextClock
+
+if TYPE_CHECKING:
+    from .text_tokens import TextClock
 
 
 class NodeInputs(Struct, frozen=True):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from halation.nodes import (
     ColorChange,
@@ -34,7 +34,9 @@ from ..request import Request
 from .expand import FlatGraph, make_zero
 from .node_inputs import NodeInputs, NodeResources
 from .references import ReferencedPictures
-from .text_tokens import TextClock, TokenSources, expand_tokens, find_source_picture
+
+if TYPE_CHECKING:
+    from .text_tokens import TextClock
 
 DEFAULT_CANVAS: Size = (1920, 1080)
 """The size of a graph that neither sets a size nor reads a picture: HDTV (ITU-R BT.709)."""
@@ -155,23 +157,26 @@ class PictureBuilder:
             return self._provider.typeset(block)
 
         def expand_text(clock: TextClock, text: str, picture: Socket) -> str:
-            def find_file() -> str:
-                return self._find_source_file(inputs, picture.name)
-
-            try:
-                return expand_tokens(text, clock, TokenSources(find_file, self._provider.read_attributes, read_date))
-            except GraphError as fault:
-                raise GraphError(f"{describe_owner(inputs.path)}: {fault}", node=inputs.path) from fault
+            return self._expand_text(inputs, clock, text, picture)
 
         return NodeResources(read, recolor, mesh, render, asset, typeset, expand_text, find_settings)
 
-    def _find_source_file(self, inputs: NodeInputs, socket: str) -> str:
-        """The file of the first picture that an input is made of, at this frame; "" if none comes from a file."""
+    def _expand_text(self, inputs: NodeInputs, clock: TextClock, text: str, picture: Socket) -> str:
+        """A text of a node with words in place of its tokens, some of which are about a picture that it reads."""
+        from .text_tokens import TokenSources, expand_tokens, find_source_picture  # few graphs draw text
+
+        def find_file() -> str:
+            """The file of the first picture that the input is made of; "" if none comes from a file."""
+            try:
+                source, owner = find_source_picture(self._flat, self.named, inputs.path, picture.name)
+            except LookupError:
+                return ""
+            return "" if source.in_memory else self._find_file(source, owner, inputs.frame, "nearest").path
+
         try:
-            picture, owner = find_source_picture(self._flat, self.named, inputs.path, socket)
-        except LookupError:
-            return ""
-        return "" if picture.in_memory else self._find_file(picture, owner, inputs.frame, "nearest").path
+            return expand_tokens(text, clock, TokenSources(find_file, self._provider.read_attributes, read_date))
+        except GraphError as fault:
+            raise GraphError(f"{describe_owner(inputs.path)}: {fault}", node=inputs.path) from fault
 
     def fit(self, ref: Ref, size: Size, owner: str) -> Ref:
         """The picture at another size. Equal up to rounding: stretched; otherwise scaled to cover and cropped."""

@@ -63,17 +63,15 @@ class PassFingerprints:
         places = {ref: number for number, ref in enumerate(group.reads)}
         for index in group.members:
             op = ops[index]
-            parts += (self._describe(index, op), *(places[ref] for ref in op.reads()))
+            parts.append(self._describe(index, op))
+            parts += [places[ref] for ref in op.reads()]
             for output in range(op.outputs):
                 places[Ref(index, output)] = len(places)
         target, root = self._target, ops[group.root]
-        return hash_parts(
-            "fragment" if root.is_fragment_only else target.form,
-            target.rounds_halves,
-            *parts,
-            *(places[ref] for ref in group.writes),
-            *self._describe_textures((*group.reads, *group.writes)),
-        )
+        form = "fragment" if root.is_fragment_only else target.form
+        written = [places[ref] for ref in group.writes]
+        textures = self._describe_textures((*group.reads, *group.writes))
+        return hash_description((form, target.rounds_halves, parts, written, textures))
 
     def _describe_textures(self, refs: Iterable[Ref]) -> list[object]:
         """How pictures are stored on the device."""

@@ -18,12 +18,12 @@ DATA_AS_COLOR = Rule(
     "Link the picture. To look at data, read it as a Field or Vector, and use levels or gradient_map.",
 )
 
-_DATA = re.compile(
-    r"(.*[._ ])?(z|z?_?depth|position|p|normals?|n|vector|velocity|motion_?vectors?|motion|uvs?|st"
-    r"|(object|material)_?(id|index)|index(ob|ma)|crypto.*)(\.[a-z]+)?",
-    re.IGNORECASE,
+_DATA = (
+    r"(?i)(.*[._ ])?(z|z?_?depth|position|p|normals?|n|vector|velocity|motion_?vectors?|motion|uvs?|st"
+    r"|(object|material)_?(id|index)|index(ob|ma)|crypto.*)(\.[a-z]+)?"
 )
-"""Names of layers that are never color, such as `Depth`, `ViewLayer.Normal` and `CryptoObject00`."""
+"""Names of layers that are never color, such as `Depth`, `ViewLayer.Normal` and `CryptoObject00`. Compiled when first
+used: few graphs read layers."""
 
 
 def find(sheet: GraphFacts) -> Iterator[Problem]:
@@ -47,7 +47,7 @@ def _data(sheet: GraphFacts, source: Port) -> str:
 
 def is_data_layer(name: str) -> bool:
     """True for the name of a layer that is never color."""
-    return _DATA.fullmatch(name) is not None
+    return re.fullmatch(_DATA, name) is not None
 
 
 def find_data_bindings(graph: Graph, files: Mapping[str, str]) -> Iterator[str]:
