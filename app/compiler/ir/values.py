@@ -49,7 +49,10 @@ class UniformConstant(Struct, frozen=True):
     def __post_init__(self) -> None:
         # Operations that are equal must compute the same: -0.0 == 0.0, but not to a shader. Adding 0 leaves one zero.
         plain = self.value
-        force_setattr(self, "value", tuple(part + 0 for part in plain) if isinstance(plain, tuple) else plain + 0)
+        if isinstance(plain, tuple):
+            force_setattr(self, "value", tuple(part + 0 for part in plain))
+        elif not plain or plain is True:
+            force_setattr(self, "value", plain + 0)
 
     @property
     def channels(self) -> int:

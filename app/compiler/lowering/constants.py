@@ -63,6 +63,6 @@ def _read_object(kind: Kind, numbers: tuple[float, ...]) -> PlannedObject:
     return PlannedObject(content=read(numbers) if read else None)
 
 
-def find_choices(node: Node) -> tuple[tuple[str, tuple[str, ...]], ...]:
-    """The options of every choice of a node, by value: its GLSL file reads them as macros."""
+def find_choices(node: Node | type[Node]) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    """The options of every choice of a node or a class, by value: its GLSL file reads them as macros."""
     return tuple((name, value.choices) for name, value in node.values.items() if value.choices)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 from typing import Any
 
-from halation.nodes import Value
+from halation.nodes import Kind, Pointwise, Size, Value
 from msgspec import Struct
 
 from ...graph import Graph
@@ -43,6 +44,28 @@ class PointwiseForm(Struct, frozen=True):
     arguments: tuple[tuple[str, str, Value | None], ...]
     shapes: tuple[PictureShape, ...]
     choices: tuple[tuple[str, tuple[str, ...]], ...]
+    outputs: tuple[str, ...]
+    """The GLSL types of the outputs."""
+
+
+@lru_cache(1024)
+def find_pointwise_form(kind: type[Pointwise], size: Size) -> PointwiseForm:
+    """What the pointwise nodes of a class have in common: a graph may have 100,000 nodes of one class."""
+    declared = [(name, kind.inputs.get(name) or kind.values[name]) for name in kind.order]
+    sockets = [output.socket for output in kind.outputs.values()]
+    return PointwiseForm(
+        tuple(
+            (name, item.glsl, item if isinstance(item, Value) else None)
+            for name, item in declared
+            if item.glsl is not None
+        ),
+        tuple(
+            PictureShape((1, 1) if socket.single else size, socket.channels, socket.kind is not Kind.IMAGE)
+            for socket in sockets
+        ),
+        constants.find_choices(kind),
+        tuple(socket.glsl for socket in sockets),
+    )
 
 
 def find_settings(context: LoweringContext, path: str, step: LoweringStep, time: float) -> Mapping[str, Any]:

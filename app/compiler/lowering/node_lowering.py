@@ -10,7 +10,6 @@ from halation.nodes import (
     MASKED,
     Field,
     Filter,
-    Kind,
     Missing,
     Node,
     Pointwise,
@@ -28,9 +27,9 @@ from msgspec.structs import replace
 
 from ...errors import GraphError, ShaderError
 from ...graph import Port
-from ..ir import Call, Choice, Memory, Operand, Parameter, PictureShape, PlannedObject, Ref, UniformConstant
+from ..ir import Call, Choice, Memory, Operand, Parameter, PlannedObject, Ref, UniformConstant
 from . import constants, masks
-from .context import LoweringContext, PointwiseForm, find_settings
+from .context import LoweringContext, PointwiseForm, find_pointwise_form, find_settings
 from .draws import Recorder
 from .expand import find_stand_in
 from .node_code import PassNode, run_passes
@@ -52,7 +51,7 @@ class NodeLowering:
     def __init__(self, context: LoweringContext) -> None:
         self._context = context
         self._builder, self._pictures = context.builder, context.pictures
-        self._forms: dict[tuple[type[Node], Size], PointwiseForm] = {}
+        self._checked = set[type[Node]]()
 
     def lower(self, path: str, frame: int, step: LoweringStep, operand_at: OperandFinder) -> None:
         """Lower a node at a frame.
@@ -133,6 +132,9 @@ class NodeLowering:
         inputs = NodeInputs(path, frame, node, narrow=narrow)
         feeds = self._context.frames.find_feeds((path, frame))
         for name, socket in node.inputs.items():
+            if name not in feeds and socket.optional:  # most masks
+                inputs.inputs[name] = constants.make_default(socket)
+                continue
             source, frames = feeds.get(name, (None, ()))
             by_frame: dict[int, Operand] = {}
             if source is not None:
@@ -260,30 +262,20 @@ class NodeLowering:
         return {name: Ref(ref.op, index) for index, name in enumerate(node.outputs)}
 
     def _find_form(self, path: str, node: Pointwise, size: Size) -> PointwiseForm:
-        """What all nodes of a class have in common, found once: a graph may have 100,000 nodes of one class."""
-        key = type(node), size
-        if key not in self._forms:
-            declared = [(name, node.inputs.get(name) or node.values[name]) for name in node.order]
-            arguments = tuple(
-                (name, item.glsl, item if isinstance(item, Value) else None)
-                for name, item in declared
-                if item.glsl is not None
-            )
-            sockets = [output.socket for output in node.outputs.values()]
-            shapes = tuple(
-                PictureShape((1, 1) if socket.single else size, socket.channels, socket.kind is not Kind.IMAGE)
-                for socket in sockets
-            )
-            self._check_function(path, node, [glsl for _, glsl, _ in arguments], [item.glsl for item in sockets])
-            self._forms[key] = PointwiseForm(arguments, shapes, constants.find_choices(node))
-        return self._forms[key]
+        """What all nodes of a class have in common. Its function is looked at once for each graph."""
+        form = find_pointwise_form(type(node), size)
+        if type(node) not in self._checked:
+            self._check_function(path, node, form)
+            self._checked.add(type(node))
+        return form
 
-    def _check_function(self, path: str, node: Node, takes: list[str], makes: list[str]) -> None:
+    def _check_function(self, path: str, node: Node, form: PointwiseForm) -> None:
         """Raise ShaderError unless the node's GLSL function takes and makes what the node declares."""
         library = self._context.library
         function = library.function(node.shader, node.function, path)
         parameters = [glsl for glsl, _ in function.parameters]
         outputs = [glsl for glsl, _ in function.outputs] or [function.result]
+        takes, makes = [glsl for _, glsl, _ in form.arguments], [*form.outputs]
         if parameters != takes or outputs != makes:
             actual = f"({', '.join(parameters)}) to ({', '.join(outputs)})"
             declared = f"({', '.join(takes)}) to ({', '.join(makes)})"
