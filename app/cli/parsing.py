@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeVar, get_args
@@ -61,6 +60,8 @@ def parse_destinations(items: Sequence[str]) -> tuple[tuple[str, Path], ...]:
 
 def parse_value(text: str) -> Any:
     """A value: a number, true or false, a list of numbers with commas, or a word."""
+    import json  # most commands set no values, and it takes 2 ms
+
     for candidate in (text, f"[{text}]"):
         try:
             return json.loads(candidate, parse_constant=_refuse_constant)

@@ -70,8 +70,6 @@ def add_data_windows(program: LoweredProgram, overscan: float, whole: Set[str] =
 
 def add_extents(program: LoweredProgram, passes: Sequence[PassGroup], whole: Set[str] = frozenset()) -> LoweredProgram:
     """The program with the pixels that these passes make of each picture: of outputs the frame, of `whole` ones all."""
-    if not program.data_windows:
-        return program
     requested = {ref: Region.whole(program.shape(ref).size) for ref in program.kept_refs}
     requested |= {ref: program.data_window(ref) for name, ref in program.outputs.items() if name in whole}
     # Nobody knows yet what the next frame will read.

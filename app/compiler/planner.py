@@ -19,7 +19,6 @@ from ..resources.collection import pause_collection
 from ..resources.picture import Picture
 from ..resources.provider import ResourceProvider
 from .areas import Region
-from .data_windows import add_data_windows, add_extents
 from .fusion.fuse import fuse
 from .fusion.limits import operations_fit
 from .fusion.rewrites import rewrite_passes
@@ -113,6 +112,8 @@ class Planner:
         before, lowered = self._lower(options, graph, request, provider, library)
         program = lowered.program
         if graph.settings.overscan:
+            from .data_windows import add_data_windows  # few graphs have pictures that go on beyond their frame
+
             program = add_data_windows(program, graph.settings.overscan, request.whole)
         scheduled = _schedule_again(options, before.scheduled, program, library) if before else None
         may_need_tiles = before.may_need_tiles if before and scheduled else True
@@ -147,7 +148,10 @@ def _schedule(options: PlanOptions, program: LoweredProgram, library: Library) -
     target = options.target
     passes = fuse(program, target, enabled=options.fusion)
     passes = rewrite_passes(program, passes, target, library) if options.fusion else passes
-    program = add_extents(program, passes, options.whole)
+    if program.data_windows:
+        from .data_windows import add_extents
+
+        program = add_extents(program, passes, options.whole)
     return schedule(program, passes, library, target, options.precision, options.halves)
 
 
@@ -163,6 +167,8 @@ def _schedule_again(
     if program.data_windows:
         if find_changed_numbers(before.program, program) is None:
             return None
+        from .data_windows import add_extents
+
         program = add_extents(program, before.passes, options.whole)
         if program.extents != before.program.extents:
             return None
