@@ -8,7 +8,7 @@ the nodes that changed (`lowering.incremental`), and scheduling rewrites only th
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
+from collections.abc import Container, Mapping, Sequence
 
 from halation.nodes import Size
 from msgspec import Struct
@@ -19,7 +19,7 @@ from ..resources.collection import pause_collection
 from ..resources.picture import Picture
 from ..resources.provider import ResourceProvider
 from .areas import Region
-from .fusion.fuse import fuse
+from .fusion.fuse import PassGroup, fuse
 from .fusion.limits import operations_fit
 from .fusion.rewrites import rewrite_passes
 from .ir import LoweredProgram
@@ -112,9 +112,7 @@ class Planner:
         before, lowered = self._lower(options, graph, request, provider, library)
         program = lowered.program
         if graph.settings.overscan:
-            from .data_windows import add_data_windows  # few graphs have pictures that go on beyond their frame
-
-            program = add_data_windows(program, graph.settings.overscan, request.whole)
+            program = _add_data_windows(program, graph.settings.overscan, request.whole)
         scheduled = _schedule_again(options, before.scheduled, program, library) if before else None
         may_need_tiles = before.may_need_tiles if before and scheduled else True
         scheduled = scheduled or _schedule(options, program, library)
@@ -144,14 +142,23 @@ class Planner:
         return None, lower(graph, request, library, provider)
 
 
+def _add_data_windows(program: LoweredProgram, overscan: float, whole: frozenset[str]) -> LoweredProgram:
+    from .data_windows import add_data_windows  # few graphs have pictures that go on beyond their frame
+
+    return add_data_windows(program, overscan, whole)
+
+
+def _add_extents(program: LoweredProgram, passes: Sequence[PassGroup], whole: frozenset[str]) -> LoweredProgram:
+    from .data_windows import add_extents
+
+    return add_extents(program, passes, whole)
+
+
 def _schedule(options: PlanOptions, program: LoweredProgram, library: Library) -> ScheduleRecord:
     target = options.target
     passes = fuse(program, target, enabled=options.fusion)
     passes = rewrite_passes(program, passes, target, library) if options.fusion else passes
-    if program.data_windows:
-        from .data_windows import add_extents
-
-        program = add_extents(program, passes, options.whole)
+    program = _add_extents(program, passes, options.whole) if program.data_windows else program
     return schedule(program, passes, library, target, options.precision, options.halves)
 
 
@@ -167,9 +174,7 @@ def _schedule_again(
     if program.data_windows:
         if find_changed_numbers(before.program, program) is None:
             return None
-        from .data_windows import add_extents
-
-        program = add_extents(program, before.passes, options.whole)
+        program = _add_extents(program, before.passes, options.whole)
         if program.extents != before.program.extents:
             return None
     return reschedule(before, program, library)
