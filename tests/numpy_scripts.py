@@ -50,6 +50,11 @@ def list_nodes() -> list[str]:
     return [id for id in catalogue() if library.find_function(id)]
 
 
+def has_pictures(id: str) -> bool:
+    """True for a node that makes pictures; others make cameras, which other nodes read."""
+    return any(not output.socket.kind.is_planned for output in catalogue()[id].outputs.values())
+
+
 def write_pictures(folder: Path) -> Path:
     """Light from -0.1 to 5 with holes, half-covered pixels and glows; fields; and normals, some of them mixed."""
     random = np.random.default_rng(5)
@@ -75,13 +80,17 @@ def write_pictures(folder: Path) -> Path:
 def make_graph(file: Path, node: type[Node], values: dict[str, Any], linked: tuple[str, ...] = ()) -> dict[str, Any]:
     """A graph of one node whose inputs, but for optional ones that are not named, read layers of a file.
 
-    A Number is the average light of one.
+    A Number is the average light of one, and a camera one of the node of that name.
     """
     inputs: dict[str, Any] = {}
     links: dict[str, str] = {}
     nodes: dict[str, Any] = {"it": {"type": node.id, "values": values}}
     for number, (name, socket) in enumerate(node.inputs.items()):
         if socket.optional and name not in linked:
+            continue
+        if socket.kind is Kind.CAMERA:
+            nodes[name] = {"type": "camera", "values": {"eye": [0.3, -3.0 - 0.2 * number, 0.7], "focal": 30.0 + number}}
+            links[f"it.{name}"] = f"{name}.camera"
             continue
         if socket.kind is Kind.NUMBER:
             inputs["measured"] = {"type": "Image", "file": file.name, "layer": "Image2"}

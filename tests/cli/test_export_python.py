@@ -18,6 +18,7 @@ from halation import document
 from halation.errors import GraphError
 from halation.export import ExportOrder
 from halation.export.python.library import load_library
+from halation.export.python.missing import list_explained
 from halation.export.python.script import export_script
 from halation.graph import OUTPUTS, Port
 from halation.nodes import MASK, Node, catalogue
@@ -27,6 +28,7 @@ from halation.resources.sandbox import UNRESTRICTED
 from numpy_scripts import (
     choose_values,
     export_output,
+    has_pictures,
     list_nodes,
     load_graph,
     make_graph,
@@ -65,7 +67,7 @@ def measure(ours: np.ndarray, theirs: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("turns", list_cases([DAILY], [(NIGHTLY,)]), ids=str)
-@pytest.mark.parametrize("id", list_nodes())
+@pytest.mark.parametrize("id", [id for id in list_nodes() if has_pictures(id)])
 def test_a_function_does_what_its_node_does(renderer, tmp_path: Path, id: str, turns: tuple[int, ...]) -> None:
     """All outputs, at the defaults and at values at random, within 1e-3 of the renderer with 32 bits."""
     node = catalogue()[id]
@@ -238,7 +240,10 @@ def test_links_to_values_masks_groups_and_sizes(cli, graphs, tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("parts", "said"),
     [
-        ({"nodes": {"odd": {"type": "depth_of_field"}}}, "node 'odd': there is no numpy text for 'depth_of_field'"),
+        (
+            {"nodes": {"odd": {"type": "depth_of_field"}}},
+            "node 'odd': there is no numpy text for 'depth_of_field' (its reference is Blender's",
+        ),
         ({"nodes": {"odd": {"type": "feedback"}}}, "node 'odd': it reads other frames"),
         ({"nodes": {"odd": {"type": "dither"}}}, "does not know 'pattern': 'blue noise'"),
         ({"nodes": {"odd": {"type": "gaussian_blur", "values": {"edge": "panorama"}}}}, "'edge': 'panorama'"),
@@ -255,6 +260,14 @@ def test_refusals_name_the_node_and_the_reason(cli, graphs, tmp_path: Path, part
     result = cli("export", graphs(**parts, links=links), "-o", tmp_path / "no.py")
     assert result.code == 3 and said in result.err and "Traceback" not in result.err
     assert not (tmp_path / "no.py").exists()
+
+
+def test_each_node_without_a_function_has_a_reason() -> None:
+    """In what a refusal says, and on the page; a node of which only cameras are read needs none."""
+    missing = sorted(id for id in catalogue() if id not in list_nodes() and has_pictures(id))
+    assert sorted(list_explained()) == missing
+    _, _, table = PAGE.read_text("utf-8").partition("## Nodes without a function")
+    assert sorted(re.findall(r"`(\w+)`", table.partition("The functions are in")[0])) == missing
 
 
 def test_two_transforms_that_work_as_one_are_refused(cli, graphs, tmp_path: Path) -> None:

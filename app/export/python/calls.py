@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from halation.nodes import INVERT_MASK, MASK, MASKED, MIX, Filter, Node, Size, Socket, Value
+from halation.nodes import INVERT_MASK, MASK, MASKED, MIX, CameraModel, Filter, Kind, Node, Size, Socket, Value
 
 from ...compiler import Ref
-from ...compiler.ir import Operand, UniformConstant
+from ...compiler.ir import Operand, PlannedObject, UniformConstant
 from ...compiler.lowering.expand import find_stand_in, make_zero
 from ...compiler.lowering.masks import hides_node, is_masked
 from ...compiler.lowering.node_inputs import takes_field
@@ -17,7 +17,7 @@ from ...graph import Port
 from ..order import ExportOrder
 from .formulas import FunctionText
 from .library import Definition, FunctionParameter, load_library
-from .numbers import DERIVED, Plain, find_unit, list_settings, write_plain, write_quantity
+from .numbers import DERIVED, Plain, find_unit, list_settings, write_exactly, write_plain, write_quantity
 from .outline import LoweredGraph, NameTable, PictureInput, ScriptCall, ScriptOutline
 
 
@@ -52,6 +52,8 @@ class CallWriter:
 
     def _declare_input(self, port: Port, operand: Operand) -> str:
         """The variable of an input of the graph; the text of a number."""
+        if isinstance(operand, PlannedObject):
+            return self._declare_camera(port, operand.content)
         if isinstance(operand, UniformConstant):
             return self._write_constant(operand.value)
         assert isinstance(operand, Ref)
@@ -61,6 +63,14 @@ class CallWriter:
         self.outline.inputs[name] = PictureInput(
             picture.path, picture.layer, self.lowered.channels_of(operand), self.lowered.size_of(operand)
         )
+        return name
+
+    def _declare_camera(self, port: Port, camera: object) -> str:
+        """The variable of a camera that comes from a file."""
+        assert isinstance(camera, CameraModel)
+        name = self._variables[port] = self._names.choose(port.node)
+        rows = tuple(camera.rows[at : at + 4] for at in (0, 4, 8))
+        self.outline.calls.append(ScriptCall((name,), "np.array", (write_exactly(rows),)))
         return name
 
     def _write_constant(self, value: Any) -> str:
@@ -98,6 +108,8 @@ class CallWriter:
 
     def _write_node(self, path: str) -> None:
         node, lowered = self.lowered.flat.nodes[path], self.lowered
+        if lowered.gives_camera_of_file(path):
+            return
         feeds = {name: source for name, (source, _) in lowered.at_frames.find_feeds((path, lowered.frame)).items()}
         if (passed := self._find_passed(path, node, feeds)) is not None:
             self._pass_through(path, node, feeds, passed)
@@ -108,7 +120,7 @@ class CallWriter:
                 for name in node.outputs
                 if isinstance(ref := lowered.results[Port(path, name), 0], Ref)
             ),
-            self.outline.size,
+            lowered.canvas or self.outline.size,
         )
         common = self._find_common_size(node, feeds, size)
         function = load_library().definitions[node.id]
@@ -237,6 +249,8 @@ class CallWriter:
                 default = (default,) * socket.channels
             return self._write_constant(default)
         text, operand = self._read(source, takes_field(socket))
+        if socket.kind is Kind.CAMERA:
+            return text
         text = self._convert(text, operand, socket.channels)
         return text if socket.own_size else self._fit(text, operand, common)
 

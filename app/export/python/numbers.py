@@ -61,6 +61,11 @@ def write_plain(value: Plain) -> str:
     return repr(value)
 
 
+def write_exactly(value: float | tuple[Any, ...]) -> str:
+    """Numbers with all their digits: a matrix of a camera is inverted."""
+    return f"({', '.join(map(write_exactly, value))})" if isinstance(value, tuple) else repr(float(value))
+
+
 def write_quantity(text: str, value: Plain, unit: str | None, height: str) -> str:
     """Text of a number, with its conversion from a unit to pixels or radians. `text` may be a lookup in a table."""
     if unit is None:

@@ -6,7 +6,7 @@ import builtins
 import keyword
 import re
 
-from halation.nodes import Node, Size, Temporal
+from halation.nodes import Kind, Node, Size, Temporal
 from msgspec import Struct, field
 
 from ...compiler import Ref, Request, graph_library
@@ -20,6 +20,7 @@ from ...inputs.provider import MediaProvider
 from ...resources.picture import Picture
 from ..order import ExportOrder
 from .library import load_library
+from .missing import explain_missing
 from .numbers import Plain
 
 MAX_FRAMES = 240
@@ -87,10 +88,12 @@ class LoweredGraph:
         self._lowering = Lowering(self.graph, request, library, provider, GraphAtFrames(self.graph), Builder())
         self.flat, self.at_frames = self._lowering.flat, self._lowering.frames
         self.source = self._lowering.find_sources()["picture"]
-        self.paths = [path for path, _ in self._lowering.list_steps()]
+        self.paths = list(dict.fromkeys(path for path, _ in self._lowering.list_steps()))
         self._refuse_nodes()
         record = self._lowering.run()
         self.steps, self.results, self._builder = record.steps, record.results, record.builder
+        self.canvas = record.canvas
+        """The size of what has no size of its own, as far as anything asks for it."""
         self.output = record.program.outputs["picture"]
 
     def size_of(self, ref: Ref) -> Size:
@@ -117,23 +120,45 @@ class LoweredGraph:
         assert picture is not None
         return picture
 
+    def gives_camera_of_file(self, path: str) -> bool:
+        """True for a node of which only a camera is read that no function makes: it is a constant of the script."""
+        if load_library().find_function(self.flat.nodes[path].id) is not None:
+            return False
+        read = {self.source} | {
+            source for other in self.paths for source, _ in self.at_frames.find_feeds((other, self.frame)).values()
+        }
+        outputs = self.flat.nodes[path].outputs
+        return all(outputs[port.socket].socket.kind is Kind.CAMERA for port in read if port.node == path)
+
     def _refuse_nodes(self) -> None:
         library, flat = load_library(), self.flat
         for path in self.paths:
             node = flat.nodes[path]
-            if path in flat.muted:
+            if path in flat.muted or self.gives_camera_of_file(path):
                 continue
-            if isinstance(node, Temporal) or node.times(self.frame):
+            if isinstance(node, Temporal) or (node.times(self.frame) and not self._stands_still(path)):
                 fault = "it reads other frames, and a script makes each frame alone"
                 raise GraphError(f"node '{path}': {fault}: mute it, or write it with --to glsl", node=path)
             if library.find_function(node.id) is None:
-                fault = f"there is no numpy text for '{node.id}'"
+                reason = explain_missing(node.id)
+                fault = f"there is no numpy text for '{node.id}'" + (f" ({reason})" if reason else "")
                 raise GraphError(f"node '{path}': {fault}: mute it, or write it with --to glsl", node=path)
             feeds = self.at_frames.find_feeds((path, self.frame))
             before = flat.nodes.get(feeds["image"][0].node) if "image" in feeds else None
             if node.id == "transform" and before is not None and before.id == "transform":
                 fault = f"it joins with the transform '{feeds['image'][0].node}', and a script filters each of them"
                 raise GraphError(f"node '{path}': {fault}: make one transform of both", node=path)
+
+    def _stands_still(self, path: str) -> bool:
+        """True for a node that reads at other frames only cameras, which are the same there."""
+        feeds = self.at_frames.find_feeds((path, self.frame))
+        node = self.flat.nodes[path]
+        others = [feeds[name] for name in node.times(self.frame) if name in feeds]
+        return not self.is_animated and all(
+            source.node in self.flat.nodes
+            and self.flat.nodes[source.node].outputs[source.socket].socket.kind is Kind.CAMERA
+            for source, _ in others
+        )
 
 
 class NameTable:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from .pixels import Array, join, largest, length, luminance_of, mix, smallest, smoothstep, straight
+from .pixels import Array, dot, join, largest, length, luminance_of, mix, smallest, smoothstep, straight
 from .places import bilinear, grid
 
 
@@ -180,11 +180,6 @@ def math(a: Array | float, operation: str, b: Array | float, c: Array | float) -
     """Calculate with Fields and Numbers."""
     result = np.asarray(OPERATIONS[operation](np.asarray(a), np.asarray(b), np.asarray(c)), np.float64)
     return result if result.ndim else np.reshape(result, (1, 1, 1))
-
-
-def dot(a: Array, b: Array) -> Array:
-    """The scalar product, as a Field."""
-    return (a * b).sum(axis=-1, keepdims=True)
 
 
 def project(a: Array, b: Array) -> Array:

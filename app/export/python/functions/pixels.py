@@ -53,6 +53,11 @@ def length(vector: Array) -> Array:
     return np.sqrt((vector * vector).sum(axis=-1, keepdims=True))
 
 
+def dot(a: Array, b: Array) -> Array:
+    """The scalar product of vectors, as a Field."""
+    return (a * b).sum(axis=-1, keepdims=True)
+
+
 def mix(a: Array | float, b: Array | float, t: Array | float) -> Array:
     """`a` where t is 0, `b` where t is 1."""
     return np.asarray(a * (1.0 - t) + b * t)

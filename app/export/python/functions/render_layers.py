@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import re
-from typing import Literal
 
 import numpy as np
 
 from .hashing import pcg3d, unit
-from .pixels import Array, join, largest, length, luminance_of, mix, premultiply_color, rgb, straight
+from .pixels import Array, join, largest, length, luminance_of, mix, premultiply_color, straight
 from .places import shift_picture
 from .tone import with_hue
 
@@ -155,67 +154,3 @@ def unit_normals(normal: Array) -> Array:
     size = length(normal)
     there = (size > 0.1) & (size < FAR)
     return np.where(there, normal / np.where(there, size, 1.0), 0.0)
-
-
-def facing(normal: Array) -> Array:
-    """How much surfaces face the camera, from normals in its own axes: x right, y up, z toward it.
-
-    Where antialiasing has mixed several normals (it makes them shorter), the mean of the pixels around that show one
-    surface.
-    """
-    unit = unit_normals(normal)
-    here, clear = np.clip(unit[..., 2:], 0.0, 1.0), (length(normal) >= 0.98) * 1.0
-    around = [(right, down) for down in (-1, 0, 1) for right in (-1, 0, 1)]
-    total = np.sum([shift_picture(clear * here, *step) for step in around], axis=0)
-    count = np.sum([shift_picture(clear, *step) for step in around], axis=0)
-    mean = np.where((clear > 0.0) | (count == 0.0), here, total / np.maximum(count, 1.0))
-    return np.where(length(unit) > 0.0, mean, 0.0)
-
-
-def rim_light(
-    image: Array,
-    normal: Array,
-    color: tuple[float, ...],
-    intensity: float,
-    power: float,
-    focus: float,
-    angle: float,
-    mask: Array | float = 1.0,
-) -> tuple[Array, Array]:
-    """Add light along rims, (1 - facing)^power, from all around or from one side: the picture, and the rim."""
-    unit = unit_normals(normal)
-    away = 1.0 - facing(normal)
-    across = unit * (1.0, 1.0, 0.0)  # the direction of the rim in the picture
-    toward = (across * (np.cos(angle), np.sin(angle), 0.0)).sum(axis=-1, keepdims=True)
-    toward = toward / np.maximum(length(across), 1e-6)
-    rim = away**power * mix(1.0, 0.5 + 0.5 * np.clip(toward, -1.0, 1.0), focus)
-    rim = np.where(length(unit) > 0.0, rim, 0.0)
-    amount = rim * np.clip(mask, 0.0, 1.0) * np.clip(image[..., 3:], 0.0, 1.0)
-    light = intensity * color[3] * rgb(color)
-    return join(image[..., :3] + light * amount, image[..., 3:]), rim
-
-
-def fog(
-    image: Array,
-    depth: Array,
-    mode: Literal["linear", "exponential", "exponential squared"],
-    color: tuple[float, ...],
-    density: Array | float,
-    start: Array | float,
-    end: Array | float,
-    sky: Array | float,
-    alpha: str,
-) -> tuple[Array, Array]:
-    """Add fog that hides more with the depth (the three kinds of fog of OpenGL): the picture, and what fog hides."""
-    there = nearness(depth) > 0.0
-    fog_depth = np.maximum(np.where(there, depth, 1e10) - start, 0.0)
-    if mode == "linear":
-        hidden = np.where(there, np.clip(fog_depth / np.maximum(np.subtract(end, start), 1e-6), 0.0, 1.0), sky)
-    else:
-        thick = density * fog_depth
-        thick = thick**2 if mode == "exponential squared" else thick
-        hidden = (1.0 - np.exp(-np.minimum(thick, 80.0))) * np.where(there, 1.0, sky)
-    hidden = color[3] * hidden
-    covered = np.clip(image[..., 3:], 0.0, 1.0) if alpha == "keep" else 1.0
-    shown = image[..., 3:] if alpha == "keep" else image[..., 3:] * (1.0 - hidden) + hidden
-    return join(image[..., :3] * (1.0 - hidden) + rgb(color) * hidden * covered, shown), hidden
