@@ -167,7 +167,7 @@ class DeferredLighting(Filter):
         """
         camera = draw.camera(self.camera)
         surface = self._describe_surfaces(draw, camera)
-        shining = self._list_lights()
+        shining = self.list_lights()
         unlimited = [light for light in shining if not is_limited(light)]
         areas = [light for light in unlimited if light.kind in AREA_KINDS]
         point_lights = [light for light in unlimited if light.kind not in AREA_KINDS]
@@ -313,7 +313,7 @@ class DeferredLighting(Filter):
             **numbers,
         )
 
-    def _list_lights(self) -> list[Light]:
+    def list_lights(self) -> list[Light]:
         """The lights that shine. Where some are solo, those alone: without the swarm and without ambient light."""
         lights = [light for light in lights_of(self.lights) if light.on]
         if solos := [light for light in lights if light.solo]:

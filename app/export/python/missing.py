@@ -10,7 +10,6 @@ _REASONS = {
         "contact_shadows", "light_shafts", "screen_reflections",
     ),
     "it approaches integrals that its reference takes over all directions": ("image_based_light",),
-    "it takes too many formulas: lights of seven kinds, shadows, mattes and cookies": ("deferred_lighting",),
     "OpenColorIO does the work": ("color_space", "lut_file"),
     "Open Image Denoise does the work": ("denoise",),
     "FreeType and HarfBuzz make its letters": ("text",),

@@ -9,20 +9,37 @@ from typing import Any
 from halation.nodes import Node, read_reference, resolve_length_unit
 
 from .formulas import FunctionText, write_formula_text
+from .lamps import list_lamps
 
 Plain = float | int | bool | str | tuple[Any, ...] | FunctionText | None
 
 _GRID_POINTS = tuple(f"point_{row}{column}" for row in range(1, 5) for column in range(1, 5))
 
-DERIVED: Mapping[str, tuple[tuple[str, ...], str, Callable[[Any], tuple[Any, ...]]]] = MappingProxyType(
+_LAMPS = (
+    "lights",
+    "swarm",
+    "swarm_place",
+    "swarm_spread",
+    "swarm_colors",
+    "swarm_intensity",
+    "swarm_reach",
+    "swarm_seed",
+)
+_SHADOWS = ("shadow_length", "shadow_thickness")
+
+DERIVED: Mapping[str, tuple[tuple[str, ...], Callable[[Any, str], dict[str, Any]]]] = MappingProxyType(
     {
-        "grid_warp": (_GRID_POINTS, "points", lambda node: tuple(getattr(node, name) for name in _GRID_POINTS)),
-        "gradient_map": (("palette", "ramp"), "ramp", lambda node: node.resolve_ramp()),
-        "color_matrix": (("preset", "matrix", "direction"), "matrix", lambda node: node.resolve_matrix()),
-        "convolve3x3": (("preset", "kernel", "normalize", "scale"), "kernel", lambda node: node.weights()),
+        "grid_warp": (
+            _GRID_POINTS,
+            lambda node, _: {"points": tuple(getattr(node, name) for name in _GRID_POINTS)},
+        ),
+        "gradient_map": (("palette", "ramp"), lambda node, _: {"ramp": node.resolve_ramp()}),
+        "color_matrix": (("preset", "matrix", "direction"), lambda node, _: {"matrix": node.resolve_matrix()}),
+        "convolve3x3": (("preset", "kernel", "normalize", "scale"), lambda node, _: {"kernel": node.weights()}),
+        "deferred_lighting": ((*_LAMPS, *_SHADOWS), list_lamps),
     }
 )
-"""Values that decide one number of a function together: their names, that of the number, and what they make of it."""
+"""Values that decide parameters of a function together: their names, and what they and the path of the node make."""
 
 
 def list_settings(node: Node, path: str) -> dict[str, Plain]:
@@ -31,9 +48,9 @@ def list_settings(node: Node, path: str) -> dict[str, Plain]:
     if node.id == "pixel_formula":
         settings["formula"] = write_formula_text(str(settings["formula"]), path)
     if node.id in DERIVED:
-        names, name, derive = DERIVED[node.id]
+        names, derive = DERIVED[node.id]
         settings = {other: setting for other, setting in settings.items() if other not in names}
-        settings[name] = derive(node)
+        settings |= derive(node, path)
     return settings
 
 
