@@ -151,14 +151,8 @@ class LoweredGraph:
 
     def _stands_still(self, path: str) -> bool:
         """True for a node that reads at other frames only cameras, which are the same there."""
-        feeds = self.at_frames.find_feeds((path, self.frame))
         node = self.flat.nodes[path]
-        others = [feeds[name] for name in node.times(self.frame) if name in feeds]
-        return not self.is_animated and all(
-            source.node in self.flat.nodes
-            and self.flat.nodes[source.node].outputs[source.socket].socket.kind is Kind.CAMERA
-            for source, _ in others
-        )
+        return not self.is_animated and all(node.inputs[name].kind is Kind.CAMERA for name in node.times(self.frame))
 
 
 class NameTable:
