@@ -89,7 +89,8 @@ def _split_settings(name: str, text: str, value: Value | None) -> Iterator[str]:
         else:
             raise UsageError(f"--set {name}=*: * works only for choices and switches; list values or a range")
         return
-    has_numbers = value is not None and value.type in ("color", "vector", "matrix", "curve", "ramp", "spline", "stroke")
+    listed = ("color", "vector", "matrix", "curve", "ramp", "spline", "stroke", "point")
+    has_numbers = value is not None and value.type in listed
     has_one_number = value is not None and value.type in ("float", "int", "bool", "choice")
     is_single = text.startswith("=") or "@" in text or not has_one_number
     for part in text.split(";"):

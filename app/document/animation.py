@@ -8,7 +8,7 @@ from halation.nodes import ROWS, SPLINE_ROWS, RowLayout, Scalar, Value
 
 from ..errors import DocumentError
 from ..graph import Animation, Expression, Key, Keys
-from ..graph.scalars import describe_scalar
+from ..graph.scalars import coerce_scalar, describe_scalar
 from . import records
 from .records import Section, convert
 from .syntax import member, word
@@ -43,6 +43,8 @@ def describe_animation(animation: Animation, value: Value | None) -> Section:
 def _key(raw: Any, file: str, path: str, declared: Value | None) -> Key:
     record = convert(raw, records.KeyRecord, file, path)
     value = _plain(record.value, ROWS.get(declared.type, SPLINE_ROWS) if declared else SPLINE_ROWS)
+    if declared and declared.type == "point":  # it may be written without the zeros at its end
+        value = coerce_scalar(declared, value) or value
     if value is None:
         fault = f"expected a number, true, false, a list of numbers or a list of points, got {word(record.value)}"
         raise DocumentError(file, member(path, "value"), fault)

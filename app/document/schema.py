@@ -26,7 +26,7 @@ Schema = dict[str, Any]
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 _PORT: Schema = {"type": "string", "pattern": r"^[^.]+\.[^.]+$"}
-_VALUE_PATH: Schema = {"type": "string", "pattern": r"^[^.]+\.[^.]+(\.[^.]+\.[^.]+)?$"}
+_VALUE_PATH: Schema = {"type": "string", "pattern": r"^[^.]+\.[^.]+(\.[^.]+\.[^.]+)?(\.\d{1,4})?$"}
 _NAME: Schema = {"pattern": "^[^./\\u0000-\\u001f\\u007f]+$"}
 _LENGTH_UNIT: Schema = {"type": "string", "pattern": r"^(px|height|px@[1-9]\d{0,4})$"}
 _NUMBERS: Schema = {"type": "array", "items": {"type": "number"}}
@@ -209,6 +209,8 @@ def _value(value: Value) -> Schema:
             type_schema = {"type": "string"}
         case "color" | "vector" | "matrix":
             type_schema = {"type": "array", "items": number, "minItems": value.length, "maxItems": value.length}
+        case "point":
+            type_schema = {**_NUMBERS, "minItems": 2, "maxItems": SPLINE_ROWS.length}
         case "curve" | "ramp" | "spline" | "stroke":
             type_schema = {"$ref": f"#/$defs/{value.type}"}
         case "items":

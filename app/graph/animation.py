@@ -14,7 +14,7 @@ from .values import coerce, value_fault
 
 Animation = Keys | Expression
 
-ANIMATED = frozenset({"float", "int", "bool", "color", "vector", "matrix", "spline", "stroke"})
+ANIMATED = frozenset({"float", "int", "bool", "color", "vector", "matrix", "spline", "stroke", "point"})
 """Types of values that can be animated."""
 
 
@@ -42,7 +42,7 @@ def animation_type_fault(port: Port, value: Value, animation: Animation) -> str 
     """Why the value at `port` cannot be animated in this way, or None. Names in expressions are not checked."""
     if value.type not in ANIMATED:
         return f"{port}: a {value.type} cannot change over time"
-    if isinstance(animation, Expression) and value.type in ROWS:
+    if isinstance(animation, Expression) and value.type in (*ROWS, "point"):
         return f"{port}: a {value.type} cannot follow an expression; set keys"
     if isinstance(animation, Expression):
         return f"{port}: {animation.fault}" if animation.fault else None

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
 
-from halation.nodes import ItemSet, Node, Plain, Scalar, Value
+from halation.nodes import ItemSet, Node, Plain, Row, Scalar, Value
 
 from ..errors import GraphError
 from .animation import ANIMATED, Animation, animation_type_fault
@@ -18,6 +18,7 @@ from .lookup import split_socket
 from .model import Port, Settings
 from .names import can_compare_all, did_you_mean
 from .scalars import coerce_scalar, describe_type
+from .spline_points import pick_point, put_points, split_point
 from .walk import find_cyclic
 
 _LONG = 4000
@@ -33,7 +34,7 @@ def evaluate_at_frame(graph: Graph, frame: float) -> Graph:
     return _FrameEvaluation(frame, graph.settings).evaluate(graph)
 
 
-def value_at(graph: Graph, port: Port, frame: int) -> Plain:
+def value_at(graph: Graph, port: Port, frame: float) -> Plain:
     """The value of a node, or of a control of a group, at a frame. Raises GraphError."""
     return _ValueEvaluation(graph, frame, graph.settings).evaluate(port)
 
@@ -160,8 +161,16 @@ class _ValueEvaluation:
 
     def evaluate(self, port: Port) -> Plain:
         """The value at the frame. Raises GraphError."""
+        plain = self._evaluate_whole(port)
+        if points := self._graph.keyed_points.get(port):
+            own = {number: self._evaluate_whole(point) for number, point in points.items()}
+            return put_points(plain, own) if isinstance(plain, tuple) else plain
+        return plain
+
+    def _evaluate_whole(self, port: Port) -> Plain:
+        """The value at the frame, without what points have of their own."""
         if port not in self._graph.animation:
-            return self._graph.value(port)
+            return self._find_point(port) or self._graph.value(port)
         if port not in self._results:
             if port in self._in_progress:
                 raise GraphError(f"{port}: its expression depends on itself", node=port.node)
@@ -170,6 +179,15 @@ class _ValueEvaluation:
         if isinstance(plain, GraphError):
             raise GraphError(str(plain), node=plain.node)
         return plain
+
+    def _find_point(self, port: Port) -> Row | None:
+        """Where keys of all points put one that has none of its own; None for any other value."""
+        point = split_point(port.socket)
+        points = Port(port.node, point[0]) if point else port
+        if point is None or points not in self._graph.animation:
+            return None
+        plain = self._evaluate_whole(points)
+        return pick_point(plain, point[1])
 
     def _evaluate_with_reads(self, port: Port) -> None:
         """Evaluate an animated value after all that it reads."""

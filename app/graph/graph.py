@@ -24,6 +24,7 @@ from .named_items import expand_path, explain_missing_field, find_field, group_s
 from .names import INPUTS, OUTPUTS, check_name, did_you_mean, fresh_name, make_printable, pick
 from .notes import keep_linked_routes, move_keys, move_layout, rename_key, without, without_route
 from .relink import keep_animation, keep_controls, move_links, relink
+from .spline_points import KeyedPoints, explain_missing_point, find_point
 from .values import coerce, value_fault
 from .walk import Wired, describe_loop, find_route
 
@@ -68,7 +69,7 @@ Item = Node | Group | Unknown
 
 @check_method_arguments
 @dataclass(frozen=True)
-class Graph(Wired[Item], EndEdits):
+class Graph(Wired[Item], EndEdits, KeyedPoints):
     """Nodes by id, links by *target*: an input has at most one source. `animation` holds values that change over time.
 
     `ui` is the layout: nodes, ends, routes and viewers by name. `extra` keeps unknown keys of the file, by the JSON
@@ -274,7 +275,7 @@ class Graph(Wired[Item], EndEdits):
         nodes = {
             id: item.with_values(**changed[id]) for id in changed if not isinstance(item := self.nodes[id], Unknown)
         }
-        still = {port: item for port, item in self.animation.items() if port not in plains and port.whole not in plains}
+        still = {port: item for port, item in self.animation.items() if not port.is_held(plains)}
         return self._with(nodes={**self.nodes, **nodes}, animation=still) if changed else self
 
     def animate(self, port: Port, animation: Animation | None) -> Self:
@@ -359,6 +360,8 @@ def _find_value(item: Item, name: str, id: str) -> Value:
     """A value, a control of a group, or a field of a named item, with its setting as default. Raises GraphError."""
     if value := find_setting(item, name):
         return value
+    if fault := explain_missing_point(name, id, partial(find_setting, item)):
+        raise GraphError(fault)
     head, inner, field = split_path(name)
     if inner and (value := find_setting(item, head)) and value.items:
         raise GraphError(explain_missing_field(value, f"{id}.{head}", inner, field))
@@ -371,6 +374,8 @@ def find_setting(item: Item, name: str) -> Value | None:
     """What `declaration` gives before units, or None where there is no such value."""
     if isinstance(item, Node) and name in item.values:
         return structs.replace(item.declaration(name), default=item.setting(name))
+    if point := find_point(name, partial(find_setting, item)):
+        return point
     head, inner, field = split_path(name)
     if inner:
         value = find_setting(item, head)

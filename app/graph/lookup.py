@@ -8,6 +8,7 @@ from ..errors import GraphError
 from .graph import Graph, Item, expand_socket, find_setting, signature
 from .model import Port
 from .named_items import find_field_declaration, join_path, split_path
+from .spline_points import split_point
 
 
 def find_node_output(graph: Graph, text: str) -> Port:
@@ -31,6 +32,8 @@ def split_socket(item: Item, words: list[str]) -> tuple[str, list[str]]:
 
 def find_declaration(item: Item, name: str) -> Value | None:
     """The declaration of a value of a node, or of a field of a named item, with its default; None if there is none."""
+    if split_point(name) and (point := find_setting(item, name)):
+        return point
     head, inner, field = split_path(name)
     if not inner:
         return signature(item).values.get(name)

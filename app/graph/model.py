@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from types import MappingProxyType
@@ -24,7 +24,8 @@ of a group, and then this limit ends the expansion."""
 class Port(Struct, frozen=True, order=True):
     """One end of a link, written `bloom.image`. The nodes `inputs` and `outputs` are the ends of the graph.
 
-    The socket of a field of a named item has dots: `relight.lights.lamp_3.intensity`.
+    The socket of a field of a named item has dots: `relight.lights.lamp_3.intensity`. That of a point of a spline ends
+    with its number: `roto.shapes.face.points.3`.
     """
 
     node: str
@@ -32,6 +33,12 @@ class Port(Struct, frozen=True, order=True):
 
     def __str__(self) -> str:
         return f"{self.node}.{self.socket}"
+
+    def is_held(self, ports: Container[Port]) -> bool:
+        """True if it is one of these ports, or a part of one: a field of an item, a point of a spline."""
+        if self in ports or "." not in self.socket:
+            return self in ports
+        return self.whole in ports or Port(self.node, self.socket.rpartition(".")[0]) in ports
 
     @property
     def whole(self) -> Port:
@@ -42,7 +49,9 @@ class Port(Struct, frozen=True, order=True):
     def parse(cls, text: str) -> Port:
         """Read `node.socket` or `node.value.item.field`. Raises GraphError."""
         node, _, socket = text.partition(".")
-        if not node or not socket or ("." in socket and (socket.count(".") != 2 or not all(socket.split(".")))):
+        parts = socket.split(".")
+        length = len(parts) - (len(parts) in (2, 4) and parts[-1].isdecimal())
+        if not node or length not in (1, 3) or not all(parts):
             raise GraphError(f"'{text}' is not a socket: write node.socket, such as 'bloom.image'")
         return cls(node, socket)
 

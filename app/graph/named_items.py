@@ -15,6 +15,7 @@ from msgspec import structs
 from ..errors import GraphError
 from .names import did_you_mean, make_printable, name_fault
 from .scalars import coerce_scalar, describe_scalar, describe_type, scalar_fault
+from .spline_points import put_points
 
 KIND = "kind"
 """The field that says what kind an item is of."""
@@ -35,7 +36,8 @@ def join_path(value: str, item: str, field: str) -> str:
 def expand_path(socket: str, values: Mapping[str, Value]) -> str:
     """The full path of a field whose value is left out: `lights.lamp_3.intensity` for `lamp_3.intensity`."""
     head, dot, rest = socket.partition(".")
-    if not dot or "." in rest or head in values:
+    _, inner, number = rest.partition(".")
+    if not dot or (inner and not number.isdecimal()) or head in values:
         return socket
     holders = [name for name, value in values.items() if isinstance(value.default, ItemSet) and head in value.default]
     if not holders:
@@ -109,20 +111,28 @@ def join_settings(settings: Mapping[tuple[str, str], Plain], find: Callable[[], 
     if len(settings) == 1 and ("", "") in settings:
         return settings["", ""]
     value = find()
-    items = settings.get(("", ""), value.default)
-    return _put_fields(items, value.items, settings) if isinstance(items, ItemSet) and value.items else items
+    whole = settings.get(("", ""), value.default)
+    if isinstance(whole, ItemSet) and value.items:
+        return _put_fields(whole, value.items, settings)
+    points = {int(number): plain for (number, _), plain in settings.items() if number.isdecimal()}
+    return put_points(whole, points) if value.type == "spline" and isinstance(whole, tuple) else whole
 
 
 def _put_fields(items: ItemSet, declared: Items, fields: Mapping[tuple[str, str], Plain]) -> ItemSet:
-    """The items with fields set, by item and field, without checks; those that do not exist change nothing."""
+    """The items with fields set, by item and field, without checks; those that do not exist change nothing.
+
+    Points of a spline are set after the spline as a whole.
+    """
     changed: dict[str, NamedItem] = {}
-    for (name, field), plain in fields.items():
-        item = changed.get(name) or items.get(name)
+    for (name, path), plain in sorted(fields.items(), key=lambda entry: "." in entry[0][1]):
+        item, (field, _, number) = changed.get(name) or items.get(name), path.partition(".")
         if item is None or isinstance(plain, ItemSet):
             continue
         if field == KIND:
             changed[name] = change_kind(declared, item, str(plain))
         elif declaration := declared.by_name[item.kind].fields.get(field):
+            if number and isinstance(points := item.fields.get(field, declaration.default), tuple):
+                plain = put_points(points, {int(number): plain})
             changed[name] = item.with_field(field, None if plain == declaration.default else plain)
     return items.replace(changed)
 

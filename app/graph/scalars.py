@@ -39,6 +39,8 @@ def coerce_scalar(value: Value, setting: object) -> Scalar | None:
             return _coerce_points(setting, value.length, 2)
         case "spline" | "stroke":
             return ROWS[value.type].read(setting)
+        case "point":
+            return ROWS["spline"].read((setting,))
         case "items":
             return None
 
@@ -63,6 +65,8 @@ def _coerce_points(setting: object, width: int, least: int) -> tuple[float, ...]
 
 def describe_scalar(value: Value, plain: Any) -> Any:
     """A setting as a file holds it: a spline or a stroke as rows, one for each point."""
+    if value.type == "point":
+        return ROWS["spline"].list(plain)[0]
     return ROWS[value.type].list(plain) if value.type in ROWS else plain
 
 
@@ -89,6 +93,8 @@ def describe_type(value: Value) -> str:
             return f'{noun}s by name, such as {{"{noun}_1": {{"kind": "{kind}"}}}}'
         case "spline" | "stroke":
             return f"a list of points, each a list of x, y, {ROWS[value.type].words}"
+        case "point":
+            return f"a list of x, y, {ROWS['spline'].words}"
         case "ramp":
             return "a list of t, red, green, blue, alpha for every stop, at least two"
 

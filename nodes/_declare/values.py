@@ -242,8 +242,8 @@ StrokePoints = Annotated[tuple[float, ...], Stroke()]
 Kernel3x3 = tuple[float, float, float, float, float, float, float, float, float]
 
 ValueType = Literal[
-    "float", "int", "bool", "choice", "color", "vector", "matrix", "curve", "ramp", "spline", "stroke", "items",
-    "path", "text",
+    "float", "int", "bool", "choice", "color", "vector", "matrix", "curve", "ramp", "spline", "stroke", "point",
+    "items", "path", "text",
 ]  # fmt: skip
 Plain = Scalar | ItemSet
 """The types of values: JSON scalars, flat lists of numbers, and named items."""

@@ -67,6 +67,8 @@ EXAMPLES: dict[type[EditCommand], Callable[[Session, Path], EditCommand]] = {
     c.DescribeControl: lambda s, p: c.DescribeControl("strength", "Strength", "How much."),
     c.MovePoints: lambda s, p: c.MovePoints(POINTS, CORNERS, "Move points"),
     c.ChangePoints: lambda s, p: c.ChangePoints(POINTS, lambda points: points[1:], "Remove a point"),
+    c.KeyPoints: lambda s, p: c.KeyPoints(POINTS, (1,), "Key a point"),
+    c.DropPointKeys: lambda s, p: c.DropPointKeys(POINTS, (2,), "Key points together"),
     c.SetKey: lambda s, p: c.SetKey(GAIN),
     c.RemoveKey: lambda s, p: c.RemoveKey(port("n0.gain")),
     c.ToggleKey: lambda s, p: c.ToggleKey(GAIN),
@@ -149,6 +151,7 @@ def session(tmp_path: Path) -> Session:
     session.apply(c.MakeGroupLocal("body"))
     session.apply(c.ExposeValue(port("n1.gain"), "strength"))
     session.apply(c.SetKey(port("n0.gain"), 0.5))
+    session.apply(c.KeyPoints(POINTS, (2,), "Key a point"))
     session.apply(c.AddFrame("Here", (0.0, 0.0)))
     session.apply(c.AddComment((0.0, 300.0), "text"))
     session.apply(c.AddDot(port("blend.first"), (50.0, 50.0)))

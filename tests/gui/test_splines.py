@@ -221,6 +221,51 @@ def test_ripple_moves_points_at_all_keys(gui, path: Path) -> None:
     gui(body, path)
 
 
+def test_a_point_is_keyed_without_the_others(gui, path: Path) -> None:
+    def body(ui: Ui) -> None:
+        start(ui)
+        add_keys(ui)
+        steps = len(ui.session.history.steps)
+        ui.editor.actions.run("viewer.key_singly")
+        ui.session.time.seek(5)
+        ui.settled()
+        ui.drag(f"point 0 {POINTS}", at(ui, 0.3, 0.2))
+        own = ui.session.graph.animation[Port("roto", "shapes.box.points.0")]
+        together = ui.session.graph.animation[POINTS]
+        assert isinstance(own, Keys) and [key.frame for key in own.keys] == [1, 5, 9]
+        assert isinstance(together, Keys) and [key.frame for key in together.keys] == [1, 9]
+        assert len(ui.session.history.steps) == steps + 1
+        ui.settled()
+        ui.shot("singly.png")
+        np.testing.assert_allclose(points_at(ui, 5)[1:], [(x + 0.05, y) for x, y in BOX[1:]])
+        assert points_at(ui, 5)[0] == pytest.approx((0.2, 0.2), abs=0.005)
+        np.testing.assert_allclose(points_at(ui, 9), [(x + 0.1, y) for x, y in BOX])
+        ui.click(f"point 0 {POINTS}")
+        ui.settled()
+        ui.editor.actions.run("viewer.join_keys")
+        np.testing.assert_allclose(points_at(ui, 5), [(x + 0.05, y) for x, y in BOX])
+        ui.keys("Ctrl+Z")
+        ui.keys("Ctrl+Z")
+        assert not ui.session.graph.keyed_points
+
+    gui(body, path)
+
+
+def test_selected_points_of_a_shape_without_keys_are_keyed(gui, path: Path) -> None:
+    def body(ui: Ui) -> None:
+        start(ui)
+        select_upper_points(ui)
+        ui.editor.actions.run("viewer.key_points")
+        assert set(ui.session.graph.keyed_points[POINTS]) == {0, 1} and POINTS not in ui.session.graph.animation
+        ui.session.time.seek(9)
+        ui.settled()
+        ui.drag(f"point 0 {POINTS}", at(ui, 0.4, 0.2))
+        assert points_at(ui, 5)[0] == pytest.approx((0.3, 0.25), abs=0.005)
+        np.testing.assert_allclose(points_at(ui, 9)[2:], BOX[2:])
+
+    gui(body, path)
+
+
 def test_a_point_is_inserted_and_removed_at_all_keys(gui, path: Path) -> None:
     """Else shapes of two keys would have another number of points, and nothing could lie between them."""
 

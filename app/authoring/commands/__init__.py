@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..edits.point_keys import SplineEdit
 from .adding import AddCodeFile, AddGroupFile, AddMatte, AddNode, AppendNode, DropFiles, InsertNode, SpliceChain
 from .clipboard import CutSelection, DuplicateSelection, PasteText
 from .coding import EmbedCode, LinkCodeFile, SetCode
@@ -36,7 +37,7 @@ from .settings import (
     SetPreroll,
     SetReferenceHeight,
 )
-from .splines import ChangePoints, MovePoints, SplineEdit
+from .splines import ChangePoints, DropPointKeys, KeyPoints, MovePoints
 from .values import (
     ConvertLength,
     DescribeControl,
@@ -80,6 +81,7 @@ __all__ = [
     "Disconnect",
     "DisconnectAll",
     "DropFiles",
+    "DropPointKeys",
     "DuplicateItem",
     "DuplicateSelection",
     "EditCommand",
@@ -94,6 +96,7 @@ __all__ = [
     "InsertNode",
     "JoinDot",
     "Keep",
+    "KeyPoints",
     "LinkCodeFile",
     "LinkGroup",
     "MakeGroup",

@@ -7,6 +7,7 @@ group; then it cannot be animated inside too.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 from halation.nodes import Scalar
 
@@ -41,9 +42,11 @@ class SetKey(EditCommand[None], frozen=True):
             keys = keys.insert(document.time.frame)
         else:
             keys = keys.set(document.time.frame, to_scalar(document.time.evaluate(self.port)))
-        return Edited(
-            translate("Key {port}", port=self.port), None, document.graph.animate(self.port, keys), merge=self.merge
-        )
+        graph = document.graph.animate(self.port, keys)
+        for point in graph.keyed_points.get(self.port, {}).values():  # a key of a spline holds all of its points
+            if isinstance(own := graph.animation[point], Keys):
+                graph = graph.animate(point, own.insert(document.time.frame))
+        return Edited(translate("Key {port}", port=self.port), None, graph, merge=self.merge)
 
 
 class RemoveKey(EditCommand[None], frozen=True):
@@ -161,10 +164,12 @@ def _animate(document: OpenDocument, graph: Graph, port: Port, animation: Animat
         return graph.animate(port, animation)
     if port not in graph.animation:
         return graph
+    own = {point: graph.animation[point] for point in graph.keyed_points.get(port, {}).values()}
     try:
-        return graph.set(port, document.time.evaluate(port))
+        graph = graph.set(port, document.time.evaluate(port))
     except GraphError:
         return graph.animate(port, None)
+    return replace(graph, animation={**graph.animation, **own}) if own else graph
 
 
 def to_scalar(value: object) -> Scalar:

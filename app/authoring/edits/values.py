@@ -49,7 +49,8 @@ def find_control(graph: Graph, port: Port) -> str | None:
 
 def is_default(graph: Graph, port: Port) -> bool:
     """True if a value is as it is in a new node, at all frames."""
-    return port not in graph.animation and graph.value(port) == reset_value(graph, port).value(port)
+    is_animated = port in graph.animation or port in graph.keyed_points
+    return not is_animated and graph.value(port) == reset_value(graph, port).value(port)
 
 
 def fit_color(graph: Graph, port: Port, value: object) -> object:

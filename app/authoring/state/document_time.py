@@ -12,6 +12,7 @@ from halation.nodes import Plain
 from ...errors import GraphError, HalationError
 from ...graph import Graph, Key, Keys, Port, find_key_range, value_at
 from ...graph.keys import round_keys
+from ...graph.spline_points import split_point
 from ..edits import folding
 from ..edits.folding import GroupPath
 from ..edits.key_frames import list_key_frames, whole_key_frames
@@ -130,7 +131,8 @@ class DocumentTime:
         graph, changed = self._document.graph, dict[Port, Plain]()
         for port in dict.fromkeys((*graph.animation, *exposed)):
             with suppress(GraphError):
-                if (plain := self.evaluate(port)) != graph.value(port):
+                plain = self.evaluate(port)
+                if split_point(port.socket) or plain != graph.value(port):  # a point is set after the whole spline
                     changed[port] = plain
         return graph.put_all(changed)
 

@@ -295,7 +295,7 @@ def _choose_rows(rows: list[NodeRow]) -> list[NodeRow]:
 
 def can_set_on_node(value: Value) -> bool:
     """False for values that only the inspector can edit."""
-    return value.type not in ("matrix", "curve", "ramp", "spline", "stroke") and (
+    return value.type not in ("matrix", "curve", "ramp", "spline", "stroke", "point") and (
         value.type != "vector" or value.length <= MOST_PARTS
     )
 

@@ -81,7 +81,7 @@ def _paint_words(sketch: Sketch, rect: Rect, row: NodeRow, color: int) -> None:
         sketch.draw_triangle((x - 4, y - size / 2), (x + 4, y - size / 2), (x, y + size), sketch.ink.dim)
         right -= 14.0
     text = row.texts[0].text
-    if not text or kind in ("vector", "matrix", "curve", "ramp", "spline", "stroke"):
+    if not text or kind in ("vector", "matrix", "curve", "ramp", "spline", "stroke", "point"):
         text = {"path": translate("no file"), "text": ""}.get(kind, translate("in the inspector"))
         color = sketch.ink.faint
     room = right - rect[0] - PAD

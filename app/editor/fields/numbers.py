@@ -218,7 +218,7 @@ def describe_default(declaration: Value) -> str:
             return name_choice(str(default))
         case "text" | "path":
             return str(default)
-        case "curve" | "ramp" | "spline" | "stroke" | "items":
+        case "curve" | "ramp" | "spline" | "stroke" | "point" | "items":
             return ""
         case _:
             assert isinstance(default, tuple)

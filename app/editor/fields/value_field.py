@@ -54,12 +54,12 @@ def value_field(
             draw = text_field
         case "items":
             return None  # they have rows of their own in the inspector
-        case "spline" | "stroke":
+        case "spline" | "stroke" | "point":
             count = len(value) // declaration.length if isinstance(value, tuple) else 0
             imgui.align_text_to_frame_padding()
             moved = translate_plural("{count} point, moved in the viewer", "{count} points, moved in the viewer", count)
             drawn = translate_plural("{count} point, drawn in the viewer", "{count} points, drawn in the viewer", count)
-            imgui.text_disabled(moved if declaration.type == "spline" else drawn)
+            imgui.text_disabled(moved if declaration.type != "stroke" else drawn)
             return None
     imgui.begin_group()
     edit = draw(fields, id, value, declaration, width, label=label, mixed=mixed)

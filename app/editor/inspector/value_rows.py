@@ -142,7 +142,7 @@ class ValueRows:
             _crosshair(rows, key)
         if control:
             self._mark(rows, port, control)
-        return released and declaration.type not in ("curve", "ramp", "spline", "stroke", "items")
+        return released and declaration.type not in ("curve", "ramp", "spline", "stroke", "point", "items")
 
     def _draw_notes(self, rows: Rows, ports: Ports, declaration: Value, value: Plain) -> None:
         """Draw what belongs below a field: the file of a path, a color space, the selected light."""

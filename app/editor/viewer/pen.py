@@ -27,6 +27,8 @@ class SplinePen(Struct):
     """The line that is drawn around points, as fractions of the picture."""
     ripples: bool = False
     """True if an edit of points at a frame is made at all of their keys."""
+    singly: bool = False
+    """True if an edit of points that have keys sets keys of these points alone."""
     copied: Mapping[int, Row] = field(default_factory=dict[int, Row])
     """The points that were copied, by their numbers."""
 

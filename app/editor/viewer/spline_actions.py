@@ -9,13 +9,17 @@ from ...language.translation import mark
 from ..shared.action import Action
 from .spline_edits import (
     can_draw,
+    can_drop_keys,
     can_paste_points,
     copy_points,
+    drop_keys,
     has_selected_points,
+    key_selected_points,
     nudge_points,
     paste_points,
     select_all_points,
     toggle_ripple,
+    toggle_singly,
 )
 from .splines import find_chosen
 
@@ -102,6 +106,37 @@ SPLINE_ACTIONS: tuple[Action[ViewerContext], ...] = (
         can_draw,
         lambda context: context.viewer.pen.ripples,
         doc="Edit points at all of their keys: what is added at this frame is added to each of them.",
+    ),
+    Action(
+        "viewer.key_singly",
+        "Key Points Singly",
+        toggle_singly,
+        "Viewer/Shapes",
+        "Alt+S",
+        "viewer",
+        can_draw,
+        lambda context: context.viewer.pen.singly,
+        doc="Edits of a shape with keys set keys of the points that move, and of no others. Such points are diamonds.",
+    ),
+    Action(
+        "viewer.key_points",
+        "Key Selected Points",
+        key_selected_points,
+        "Viewer/Shapes",
+        "Alt+K",
+        "viewer",
+        has_selected_points,
+        doc="Set keys of the selected points at this frame, which the other points do not get.",
+    ),
+    Action(
+        "viewer.join_keys",
+        "Key Points Together",
+        drop_keys,
+        "Viewer/Shapes",
+        "",
+        "viewer",
+        can_drop_keys,
+        doc="Remove the keys that the selected points have of their own, so that they follow the keys of the shape.",
     ),
     *_list_nudges(),
 )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from halation.nodes import Row, insert_point
 
-from ...authoring.commands import AddItem, ChangePoints, MovePoints, SplineEdit
+from ...authoring.commands import AddItem, ChangePoints, DropPointKeys, KeyPoints, MovePoints, SplineEdit
 from ...language.translation import mark, translate
 from .geometry import Point, Sight
 from .splines import (
@@ -23,6 +23,7 @@ from .splines import (
     find_normal,
     find_own_outline,
     find_selected,
+    list_keyed,
     list_outlines,
     measure_height,
     select_points,
@@ -114,6 +115,7 @@ def insert_on_curve(context: ViewerContext, target: SplineTarget) -> None:
         target.outline,
         lambda points: insert_point(points, target.index, target.t),
         mark("Insert a point in {shape}"),
+        (*range(target.index + 1), None, *range(target.index + 1, len(target.outline.points))),
     )
     select_points(context, target.outline, (target.index + 1,))
 
@@ -135,11 +137,12 @@ def remove_points(context: ViewerContext) -> None:
     outline = find_chosen(context)
     assert outline is not None
     removed = find_selected(context, outline)
+    kept = tuple(number for number in range(len(outline.points)) if number not in removed)
 
     def remove(points: tuple[Row, ...]) -> Iterable[Row]:
         return (point for number, point in enumerate(points) if number not in removed)
 
-    _change_points(context, outline, remove, mark("Remove points of {shape}"))
+    _change_points(context, outline, remove, mark("Remove points of {shape}"), kept)
     select_points(context, outline, ())
 
 
@@ -196,16 +199,50 @@ def toggle_ripple(context: ViewerContext) -> None:
     context.viewer.pen.ripples = not context.viewer.pen.ripples
 
 
+def toggle_singly(context: ViewerContext) -> None:
+    """Give points that are edited keys of their own, or key all points together."""
+    context.viewer.pen.singly = not context.viewer.pen.singly
+
+
+def key_selected_points(context: ViewerContext) -> None:
+    """Set keys of the selected points at this frame, which the others do not get."""
+    if (outline := find_chosen(context)) is not None:
+        label = translate("Key points of {shape}", shape=outline.name)
+        command = KeyPoints(outline.points_port, tuple(find_selected(context, outline)), label)
+        context.log.attempt(lambda: context.session.apply(command))
+
+
+def can_drop_keys(context: ViewerContext) -> bool:
+    """True if one of the selected points has keys of its own."""
+    outline = find_chosen(context)
+    return outline is not None and not list_keyed(context, outline).keys().isdisjoint(find_selected(context, outline))
+
+
+def drop_keys(context: ViewerContext) -> None:
+    """Key the selected points together with the others again."""
+    if (outline := find_chosen(context)) is not None:
+        label = translate("Key points of {shape} together", shape=outline.name)
+        command = DropPointKeys(outline.points_port, tuple(find_selected(context, outline)), label)
+        context.log.attempt(lambda: context.session.apply(command))
+
+
 def _set_points(context: ViewerContext, outline: SplineOutline, points: list[Row], label: str, merge: str = "") -> None:
     """Set the points of a shape, those of the key at this frame, or with ripple those of all keys."""
     named = translate(label, shape=outline.name)
-    command = MovePoints(outline.points_port, tuple(points), named, merge, context.viewer.pen.ripples)
+    pen = context.viewer.pen
+    command = MovePoints(outline.points_port, tuple(points), named, merge, pen.ripples, pen.singly)
     context.log.attempt(lambda: context.session.apply(command))
 
 
-def _change_points(context: ViewerContext, outline: SplineOutline, change: SplineEdit, label: str) -> None:
-    """Change which points a shape has, in all of its keys."""
-    command = ChangePoints(outline.points_port, change, translate(label, shape=outline.name))
+def _change_points(
+    context: ViewerContext,
+    outline: SplineOutline,
+    change: SplineEdit,
+    label: str,
+    origins: tuple[int | None, ...],
+) -> None:
+    """Change which points a shape has, in all keys. `origins` are the numbers that they had, None of new ones."""
+    command = ChangePoints(outline.points_port, change, translate(label, shape=outline.name), origins=origins)
     context.log.attempt(lambda: context.session.apply(command))
 
 
@@ -273,13 +310,14 @@ def lift_pen(context: ViewerContext) -> None:
         return
     outline = find_drawn(context)
     if outline is not None:
-        _change_points(context, outline, lambda points: (*points, point), mark("Add a point to {shape}"))
+        origins = (*range(len(outline.points)), None)
+        _change_points(context, outline, lambda points: (*points, point), mark("Add a point to {shape}"), origins)
         select_points(context, outline, (len(outline.points),))
         return
 
     if port is None:
         if (own := find_own_outline(context)) is not None:
-            _change_points(context, own, lambda _: (point,), mark("Draw {shape}"))
+            _change_points(context, own, lambda _: (point,), mark("Draw {shape}"), (None,))
             pen.shape = str(own.points_port)
             select_points(context, own, (0,))
         return

@@ -11,7 +11,7 @@ from ..theme.style import u32, ui_scale
 from .geometry import Point, Sight
 from .grips import draw_grip, is_near
 from .spline_edits import find_drawn, find_pen_frame
-from .splines import SplineOutline, find_selected, list_outlines, list_tangents, place_feather
+from .splines import SplineOutline, find_selected, list_keyed, list_outlines, list_tangents, place_feather
 from .strokes import BLACK, CHOSEN, SHADE, WHITE, around, draw_label, draw_path
 
 if TYPE_CHECKING:
@@ -62,10 +62,16 @@ def _draw_points(
             draw_path(lines, [sight.place(outline.places[number]), at], WHITE, 1.0)
             draw_grip(lines, at, "size" if name == "feather" else "turn", is_lit=is_near(at, mouse))
             context.places[f"{name} {outline.points_port}"] = around(at, 5.0 * scale)
+    keyed = list_keyed(context, outline)
     for index, place in enumerate(outline.places):
         at, size = sight.place(place), 3.5 * scale
         color = CHOSEN if index in selected or is_near(at, mouse) else WHITE
         for grown, ink in ((1.5 * scale, u32(BLACK, SHADE)), (0.0, u32(color))):
             reach = size + grown
-            lines.add_rect_filled((at[0] - reach, at[1] - reach), (at[0] + reach, at[1] + reach), ink)
+            if index in keyed:
+                lines.add_ngon_filled(at, 1.5 * reach, ink, 4)
+            else:
+                lines.add_rect_filled((at[0] - reach, at[1] - reach), (at[0] + reach, at[1] + reach), ink)
+        if keyed.get(index):
+            lines.add_ngon_filled(at, 2.2 * scale, u32(BLACK), 4)
         context.places[f"point {index} {outline.points_port}"] = around(at, 5.0 * scale)

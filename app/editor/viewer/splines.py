@@ -7,7 +7,7 @@ in the file stay those of the shape before it is moved.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal, cast
 
@@ -232,6 +232,12 @@ def find_selected(context: ViewerContext, outline: SplineOutline) -> list[int]:
     """The numbers of the selected points of an outline, in order."""
     numbers = context.viewer.pen.find_points(str(outline.points_port))
     return sorted(number for number in numbers if number < len(outline.points))
+
+
+def list_keyed(context: ViewerContext, outline: SplineOutline) -> Mapping[int, bool]:
+    """The points of an outline with keys of their own, by number: whether there is one at this frame."""
+    points = context.session.graph.keyed_points.get(outline.points_port, {})
+    return {number: context.session.time.find_key(port) is not None for number, port in points.items()}
 
 
 def select_points(context: ViewerContext, outline: SplineOutline, numbers: Iterable[int]) -> None:

@@ -291,6 +291,8 @@ TESTED_ELSEWHERE = {
     commands.AddMatte,
     commands.AnimateValues,
     commands.ChangePoints,
+    commands.KeyPoints,
+    commands.DropPointKeys,
     commands.MovePoints,
     commands.ReplaceDocument,
     commands.DropFiles,
