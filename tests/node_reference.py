@@ -46,6 +46,7 @@ NOTES = (
     "File",
     "OfLayer",
     "OfSpace",
+    "OneOf",
     "Picks",
     "Curve",
     "ColorRamp",

@@ -30,7 +30,7 @@ def find_graph_facts(path: Path, sandbox: Sandbox) -> dict[str, Any]:
         "controls": {
             name: {
                 "value": default_text(value),
-                "range": ", ".join(value.choices) or soft_range(value),
+                "range": ", ".join(filter(None, value.choices)) or soft_range(value),
                 "unit": value.unit or "",
                 "doc": value.doc,
                 "target": str(graph.controls[name].target),

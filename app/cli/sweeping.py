@@ -85,7 +85,7 @@ def _split_settings(name: str, text: str, value: Value | None) -> Iterator[str]:
         if value.type == "bool":
             yield from ("false", "true")
         elif value.choices:
-            yield from value.choices
+            yield from filter(None, value.choices) if value.listed_in else value.choices
         else:
             raise UsageError(f"--set {name}=*: * works only for choices and switches; list values or a range")
         return

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from halation.nodes import ItemSet, Value
+from halation.nodes import ItemSet, Node, Value
 
 from ..errors import GraphError
 from .graph import Graph, Item, expand_socket, find_setting, signature
@@ -36,7 +36,8 @@ def find_declaration(item: Item, name: str) -> Value | None:
         return point
     head, inner, field = split_path(name)
     if not inner:
-        return signature(item).values.get(name)
+        value = signature(item).values.get(name)
+        return item.declaration(name) if value and value.listed_in and isinstance(item, Node) else value
     value = find_setting(item, head)
     return value and find_field_declaration(value, inner, field)
 

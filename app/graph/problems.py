@@ -203,7 +203,7 @@ def _values(id: str, item: Item) -> Iterator[Problem]:
     settings: Mapping[str, Any] = node.settings if node else item.values if isinstance(item, Group) else {}
     for name, value in values.items():
         setting = settings.get(name, value.default)
-        if node and node.length_units:
+        if node and (node.length_units or value.listed_in):
             value = node.declaration(name)
         if value.items:
             for path, fault in find_item_faults(value, setting) if setting is not value.default else ():

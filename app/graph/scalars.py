@@ -6,7 +6,7 @@ import math
 from itertools import pairwise
 from typing import Any, cast
 
-from halation.nodes import MAX_POINTS, ROWS, Scalar, Value
+from halation.nodes import MAX_POINTS, ROWS, Scalar, Value, is_number
 
 from ..errors import UsageError
 from .frames import Pattern
@@ -32,6 +32,8 @@ def coerce_scalar(value: Value, setting: object) -> Scalar | None:
         case "bool":
             return setting if isinstance(setting, bool) else None
         case "choice" | "path" | "text":
+            if value.listed_in and isinstance(setting, int) and not isinstance(setting, bool):
+                return str(setting)
             return setting if isinstance(setting, str) else None
         case "color" | "vector" | "matrix":
             return coerce_numbers(setting, value.length)
@@ -80,6 +82,10 @@ def describe_type(value: Value) -> str:
         case "bool":
             return "true or false"
         case "choice":
+            if value.listed_in:
+                names = ", ".join(filter(None, value.choices))
+                ends = f"one of {names}, or a number up to {value.maximum:g}"
+                return ends if names else f"a name in '{value.listed_in}', which lists none"
             return f"one of {', '.join(value.choices)}"
         case "path" | "text":
             return "a string"
@@ -178,7 +184,8 @@ def _coerce_number(setting: object) -> float | None:
 
 
 def _is_unknown_choice(value: Value, plain: str) -> bool:
-    return value.type == "choice" and plain not in value.choices
+    is_unknown = value.type == "choice" and plain not in value.choices
+    return is_unknown and not (value.listed_in and is_number(plain) and int(plain) <= value.maximum)
 
 
 def _describe_range(value: Value) -> str:

@@ -54,6 +54,7 @@ from .lettering import (
     Typeface,
     TypesetText,
 )
+from .listed_names import find_number, is_number
 from .masking import INVERT_MASK, MASK, MASKED, MIX
 from .mattes import float_bits, format_names, matte_of, murmur3, pick_ids, pick_names, toggle_name
 from .node import Filter, Node, Pointwise, Reader, Source, Temporal
@@ -95,6 +96,7 @@ from .values import (
     OfItem,
     OfLayer,
     OfSpace,
+    OneOf,
     PatternLoop,
     PatternOffset,
     PatternPeriod,
@@ -185,6 +187,7 @@ __all__ = [
     "OfItem",
     "OfLayer",
     "OfSpace",
+    "OneOf",
     "OutlineFill",
     "OutlinePlace",
     "OutputSocket",
@@ -243,11 +246,13 @@ __all__ = [
     "curve_at",
     "curve_knots",
     "curve_point",
+    "find_number",
     "float_bits",
     "format_names",
     "glsl_type",
     "insert_point",
     "is_length",
+    "is_number",
     "join_points",
     "length_unit_fault",
     "list_curves",

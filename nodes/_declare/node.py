@@ -15,6 +15,7 @@ from .camera import CameraModel
 from .checks import check_aliases, check_names
 from .draw import Affine, Draw, Drawn
 from .lengths import WORKING_UNITS, LengthUnits, declare_in_unit, is_length, resolve_length_unit, unit_factor
+from .listed_names import declare_choice
 from .masking import INVERT_MASK, MASK, MIX, is_maskable, list_mask_values, list_own_names, make_mask
 from .sockets import Image, OutputSocket, Size, Socket
 from .traits import ProxyNote, Trait
@@ -197,8 +198,13 @@ class Node:
         return values
 
     def declaration(self, name: str, reference_height: int | None = None) -> Value:
-        """A value as it is declared, in the unit of its number. Its default is that of the class."""
+        """A value as it is declared, in the unit of its number. Its default is that of the class.
+
+        A text that is one of the names in another one is a choice among these.
+        """
         value = self.values[name]
+        if value.listed_in:
+            return declare_choice(value, self.setting(value.listed_in))
         if not is_length(value):
             return value
         chosen_unit = dict(self.length_units).get(name)

@@ -89,6 +89,15 @@ class OfItem(Struct, frozen=True):
     """The value is the name of another item beside the one that it belongs to, or empty. Names lead in no circle."""
 
 
+class OneOf(Struct, frozen=True):
+    """The value is one of the names that another text of the node lists, with commas between them, or the number of
+    one from 1 to `most`; empty if it is none. In a graph it is a choice among these names.
+    """
+
+    names: str
+    most: int
+
+
 class Lines(Struct, frozen=True):
     """The value is a text of several lines: its field in interfaces has room for them."""
 
@@ -298,6 +307,8 @@ class Value(Struct, frozen=True):
     """What named items it can hold."""
     names_item: bool = False
     """True for the name of another item beside its own."""
+    listed_in: str = ""
+    """The text that lists the names that it is one of; it may also be a number up to its `maximum`."""
 
     @property
     def glsl(self) -> str | None:
@@ -360,6 +371,8 @@ def read_value(name: str, hint: Any, default: Any) -> Value:
             facts |= {"file": note.path, "role": note.role}
         elif type(note) in _FLAGS:
             facts[_FLAGS[type(note)]] = True
+        elif isinstance(note, OneOf):
+            facts |= {"listed_in": note.names, "minimum": 1, "maximum": note.most}
         elif isinstance(note, Picks):
             facts |= {"file": note.path, "matte": note.layer}
         elif isinstance(note, Handle):

@@ -1,13 +1,16 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import Image, OutputSocket, Pointwise, Size, Slider, Trait
+from .._declare import Doc, Image, OneOf, OutputSocket, Pointwise, Size, Slider, Trait, find_number
+
+_INPUTS = "abcdefgh"
 
 
 class Select(Pointwise):
-    """Show one of several pictures, by number. What is not chosen is not computed.
+    """Show one of several pictures, by name or by number. What is not chosen is not computed.
 
-    Give the number keys or an expression to choose by the frame, such as `=frame < 24 ? 1 : 2`. The result has the size
+    List the names, such as `day, dusk, night`, and choose one of them; a control of that is a list of the names. Or
+    give the number keys or an expression to choose by the frame, such as `=frame < 24 ? 1 : 2`. The result has the size
     of the picture that is chosen; without a link it is transparent black.
     """
 
@@ -27,13 +30,23 @@ class Select(Pointwise):
     g = Image(0.0, doc="Number 7.")
     h = Image(0.0, doc="Number 8.")
     which: Annotated[
-        int, Slider(1, 8, unit="count", minimum=1, maximum=8, doc="The number of the picture that is shown.")
-    ] = 1
+        int,
+        Slider(
+            1, 8, unit="count", minimum=1, maximum=8,
+            doc="The number of the picture that is shown, where none is chosen. A measured number counts in any case.",
+        ),
+    ] = 1  # fmt: skip
+    names: Annotated[str, Doc("What the pictures are called, from the first on, with commas between.")] = ""
+    choice: Annotated[str, OneOf("names", len(_INPUTS)), Doc("The picture that is shown, by its name or number.")] = ""
 
     out = OutputSocket()
 
     def identity(self) -> str | None:
-        return "abcdefgh"[self.which - 1]
+        return _INPUTS[self._find_chosen() - 1]
 
     def output_size(self, inputs: Mapping[str, Size], canvas: Size) -> Size:
-        return inputs.get("abcdefgh"[self.which - 1], canvas)
+        return inputs.get(_INPUTS[self._find_chosen() - 1], canvas)
+
+    def _find_chosen(self) -> int:
+        number = find_number(self.names, self.choice)
+        return number if number and number <= len(_INPUTS) else self.which

@@ -263,6 +263,7 @@ def _make_value_rows(id: str, item: Item, graph: Graph, facts: NodeFacts, values
     rows: list[NodeRow] = []
     for name, value in values.items():
         plain = item.setting(name) if isinstance(item, Node) else graph.value(Port(id, name))
+        value = item.declaration(name) if value.listed_in and isinstance(item, Node) else value
         if value.folded and plain == value.default and name not in facts.linked_ins:
             continue
         kind = find_value_kind(value) if name in facts.linked_ins or _is_wireable(graph, Port(id, name)) else None

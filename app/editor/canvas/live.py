@@ -172,7 +172,7 @@ class LiveFields(Struct):
     def _draw_choices(self, port: Port, value: Value, plain: Plain) -> None:
         appearing = imgui.is_window_appearing()
         for choice in value.choices:
-            if imgui.selectable(make_label(name_choice(choice) or " ", choice), choice == plain)[0]:
+            if imgui.selectable(make_label(name_choice(choice) or " ", f"choice {choice}"), choice == plain)[0]:
                 self._edits.append((port, Edit(choice)))
             low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
             self.context.places[f"choice {choice}"] = low.x, low.y, high.x, high.y

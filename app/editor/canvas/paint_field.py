@@ -82,7 +82,7 @@ def _paint_words(sketch: Sketch, rect: Rect, row: NodeRow, color: int) -> None:
         right -= 14.0
     text = row.texts[0].text
     if not text or kind in ("vector", "matrix", "curve", "ramp", "spline", "stroke", "point"):
-        text = {"path": translate("no file"), "text": ""}.get(kind, translate("in the inspector"))
+        text = {"path": translate("no file"), "text": "", "choice": ""}.get(kind, translate("in the inspector"))
         color = sketch.ink.faint
     room = right - rect[0] - PAD
     label = sketch.shorten(row.label, room * 0.5)

@@ -57,7 +57,8 @@ def default_of(graph: Graph, port: Port) -> Plain:
 def declare(graph: Graph, port: Port, declaration: Value) -> Value:
     """The declaration of a value in the unit that its number has in a graph."""
     item = graph.nodes.get(port.node)
-    if not is_length(declaration) or not isinstance(item, Node) or port.socket not in item.values:
+    is_general = not is_length(declaration) and not declaration.listed_in
+    if is_general or not isinstance(item, Node) or port.socket not in item.values:
         return declaration
     return item.declaration(port.socket, graph.settings.reference_height)
 
