@@ -12,6 +12,8 @@ from scipy import ndimage
 
 WIDTH, HEIGHT, SAMPLES = 144, 96, 4
 NOISE = 0.008
+BACKGROUND = (0.4, 0.25, 0.1)
+"""What subjects are put before."""
 
 
 @dataclass(frozen=True)
@@ -91,3 +93,11 @@ def measure_matte(matte: np.ndarray, coverage: np.ndarray) -> tuple[float, float
     steepness = [ndimage.gaussian_gradient_magnitude(alpha.astype(np.float64), 1.4) for alpha in (matte, coverage)]
     gradient = np.sum((steepness[0] - steepness[1]) ** 2)
     return float(np.abs(difference).sum() / 1e3), float((difference**2).mean()), float(gradient / 1e3)
+
+
+def measure_composite(subject: np.ndarray, plate: Plate) -> float:
+    """The PSNR, in decibels with a peak of 1, of a premultiplied subject [h, w, 4] over BACKGROUND."""
+    background, cover = np.array(BACKGROUND), plate.coverage[..., None]
+    composite = subject[..., :3].astype(np.float64) + (1.0 - subject[..., 3:].astype(np.float64)) * background
+    error = composite - (cover * plate.color + (1.0 - cover) * background)
+    return float(-10.0 * np.log10((error**2).mean()))

@@ -1,7 +1,9 @@
 """Makes blender_keying.npz: the errors of Blender's compositor node Keying on the plates of tests/green_screens.py.
 
 The key color is the mean of the empty screen. Of all settings in `SETTINGS` each error is that of the best, chosen for
-every plate and every error. Run once with the module of Blender 5.0.1 in a Python of its own; Blender is only called:
+every plate and every error. The PSNR of the composite is the best of all these together with all of `DESPILLS`: the
+node gives the despilled picture times the matte, which is checked, so that both can be rendered by themselves. Run once
+with the module of Blender 5.0.1 in a Python of its own; Blender is only called:
 
     python3.11 -m venv blender && blender/bin/pip install bpy==5.0.1 scipy
     blender/bin/python tests/data/make_blender_keying.py
@@ -19,7 +21,7 @@ import numpy as np
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent))
-from green_screens import HEIGHT, SUBJECTS, WIDTH, make_plate, measure_matte  # noqa: E402
+from green_screens import HEIGHT, SUBJECTS, WIDTH, Plate, make_plate, measure_composite, measure_matte  # noqa: E402
 
 SETTINGS = tuple(
     itertools.product(
@@ -27,6 +29,9 @@ SETTINGS = tuple(
     )
 )
 """Balance, black level, white level, and the size of the blur before the key."""
+
+DESPILLS = tuple(itertools.product((0.0, 0.25, 0.5, 0.75, 1.0), (0.0, 0.25, 0.5, 0.75, 1.0)))
+"""Strength and balance of the despill."""
 
 
 def build_scene():
@@ -42,7 +47,7 @@ def build_scene():
     )
     image.image = source
     nodes.links.new(image.outputs[0], node.inputs["Image"])
-    nodes.links.new(node.outputs["Matte"], out.inputs[0])
+    nodes.links.new(node.outputs["Image"], out.inputs[0])
     scene.camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
     scene.collection.objects.link(scene.camera)
     scene.render.engine, scene.cycles.samples = "CYCLES", 1
@@ -51,41 +56,81 @@ def build_scene():
     scene.view_settings.view_transform = "Standard"
     settings = scene.render.image_settings
     settings.media_type, settings.file_format, settings.color_depth = "IMAGE", "OPEN_EXR", "32"
+    settings.color_mode = "RGBA"
     return source, node
 
 
-def render_matte(folder: Path) -> np.ndarray:
-    """The matte of the node. Blender counts rows from below."""
-    render = bpy.context.scene.render
-    render.filepath = str(folder / "out.exr")
+def render(folder: Path) -> np.ndarray:
+    """The picture of the node, [h, w, 4], whose alpha is the matte. Blender counts rows from below."""
+    settings = bpy.context.scene.render
+    settings.filepath = str(folder / "out.exr")
     bpy.ops.render.render(write_still=True)
-    image = bpy.data.images.load(render.filepath, check_existing=False)
+    image = bpy.data.images.load(settings.filepath, check_existing=False)
     pixels = np.empty(HEIGHT * WIDTH * 4, np.float32)
     image.pixels.foreach_get(pixels)
     bpy.data.images.remove(image)
-    return pixels.reshape(HEIGHT, WIDTH, 4)[::-1, :, 0]
+    return pixels.reshape(HEIGHT, WIDTH, 4)[::-1].copy()
+
+
+def set_matte(node, setting: tuple[float, ...]) -> None:
+    """Set what the matte follows."""
+    node.inputs[3].default_value, node.inputs["Black Level"].default_value = setting[:2]
+    node.inputs["White Level"].default_value, node.inputs[2].default_value = setting[2:]
+
+
+def set_despill(node, strength: float, balance: float) -> None:
+    """Set the strength and the balance of the despill; the second input of that name is its balance."""
+    node.inputs["Strength"].default_value, node.inputs[15].default_value = strength, balance
+
+
+def render_despilled(node, folder: Path) -> dict[tuple[float, float], np.ndarray]:
+    """The picture where the matte is 1 everywhere, by strength and balance of the despill."""
+    pictures = {}
+    node.inputs["Core Matte"].default_value = 1.0
+    for despill in DESPILLS:
+        set_despill(node, *despill)
+        pictures[despill] = render(folder)
+    node.inputs["Core Matte"].default_value = 0.0
+    return pictures
+
+
+def measure_composites(node, plate: Plate, mattes: list[np.ndarray], folder: Path) -> tuple[float, tuple[float, ...]]:
+    """The highest PSNR of a composite with all mattes and all despills, and its settings."""
+    despilled = render_despilled(node, folder)
+    best = (0.0, ())
+    for setting, matte in zip(SETTINGS, mattes, strict=True):
+        for despill, picture in despilled.items():
+            decibels = measure_composite(picture * matte[..., None], plate)
+            best = max(best, (decibels, (*setting, *despill)))
+    set_matte(node, best[1][:4])
+    set_despill(node, *best[1][4:])
+    rendered = measure_composite(render(folder), plate)
+    assert abs(rendered - best[0]) < 1e-3, (rendered, best)
+    return best
 
 
 def main() -> None:
     """Write blender_keying.npz beside this file."""
     source, node = build_scene()
     errors = {}
-    with tempfile.TemporaryDirectory() as folder:
-        for name in SUBJECTS:
-            plate = make_plate(name)
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for subject in SUBJECTS:
+            plate = make_plate(subject)
             source.pixels.foreach_set(plate.picture[::-1].ravel())
             source.update()
             node.inputs["Key Color"].default_value = (*plate.screen_color, 1.0)
-            measured = []
-            for balance, black, white, blur in SETTINGS:
-                node.inputs[2].default_value = blur
-                node.inputs[3].default_value = balance
-                node.inputs["Black Level"].default_value = black
-                node.inputs["White Level"].default_value = white
-                measured.append(measure_matte(render_matte(Path(folder)), plate.coverage))
+            mattes = list[np.ndarray]()
+            for setting in SETTINGS:
+                set_matte(node, setting)
+                mattes.append(render(folder)[..., 3])
+            measured = [measure_matte(matte, plate.coverage) for matte in mattes]
             best = np.argmin(measured, 0)
-            print(name, np.min(measured, 0), [SETTINGS[index] for index in best], file=sys.stderr)
-            errors[name] = np.min(measured, 0)
+            print(subject, np.min(measured, 0), [SETTINGS[index] for index in best], file=sys.stderr)
+            errors[subject] = np.min(measured, 0)
+            composite = measure_composites(node, plate, mattes, folder)
+            print(subject, composite, file=sys.stderr)
+            errors[f"{subject} composite"] = composite[0]
     np.savez_compressed(HERE / "blender_keying.npz", version=bpy.app.version_string, **errors)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from commands import make_cli
-from green_screens import NOISE, SUBJECTS, make_plate, measure_matte
+from green_screens import NOISE, SUBJECTS, make_plate, measure_composite, measure_matte
 from halation.nodes.matte.difference_key import DifferenceKey
 from halation.nodes.matte.keyer import Keyer
 from halation.nodes.matte.screen_clean_plate import ScreenCleanPlate
@@ -39,18 +39,17 @@ def test_mattes_are_closer_to_the_truth_than_blenders(run, name):
     assert (np.array(errors) < limits).all(), errors / limits
 
 
-@pytest.mark.parametrize("name", ["dark hair", "blue screen"])
-def test_a_composite_is_close_to_the_truth(run, name):
-    """Over a new background, without spill: the error is not far above the noise of the plate."""
+@pytest.mark.parametrize("name", SUBJECTS)
+def test_composites_are_closer_to_the_truth_than_blenders(run, name):
+    """Over a new background, without spill, by PSNR: against the best of Blender's 480 mattes with each of 25 despills,
+    with the setting that the mattes above have. The error is not far above the noise of the plate."""
     plate = make_plate(name)
     screen = (*plate.screen_color, 1.0)
     clean = run(ScreenCleanPlate(screen=screen), {"image": plate.picture})
     out = run(Keyer(screen=screen, **SETTINGS[name]), {"image": plate.picture, "clean_plate": clean})
-    background = np.array((0.4, 0.25, 0.1))
-    cover = plate.coverage[..., None]
-    composite = out[..., :3] + (1.0 - out[..., 3:]) * background
-    error = composite - (cover * plate.color + (1.0 - cover) * background)
-    assert np.sqrt((error**2).mean()) < 3.0 * NOISE
+    decibels = measure_composite(out, plate)
+    assert decibels > np.load(BLENDER)[f"{name} composite"] + 4.0
+    assert decibels > -20.0 * np.log10(3.0 * NOISE)
 
 
 @pytest.mark.parametrize("name", SUBJECTS)
