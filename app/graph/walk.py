@@ -12,7 +12,7 @@ from halation.nodes import Node
 
 from ..errors import GraphError
 from .followed_types import fits_as_declared
-from .model import Port
+from .model import Port, Unknown
 from .names import INPUTS, OUTPUTS
 
 _REPORTED_LOOPS = 8
@@ -177,10 +177,11 @@ class Wired(Generic[T]):
         """What `link_faults` holds, one after the other: there may be 100,000, and nobody reads them all."""
         for target, source in self.links.items():
             start, end = self.nodes.get(source.node), self.nodes.get(target.node)
-            are_nodes = isinstance(start, Node) and isinstance(end, Node)
-            if are_nodes and fits_as_declared(type(start), source.socket, type(end), target.socket):
-                continue
-            if fault := self.link_fault(source, target):
+            if isinstance(start, Node) and isinstance(end, Node):
+                fits = fits_as_declared(type(start), source.socket, type(end), target.socket)
+            else:
+                fits = isinstance(start, Unknown) and isinstance(end, Unknown)  # whose sockets nobody knows
+            if not fits and (fault := self.link_fault(source, target)):
                 yield target, fault
 
     def order(self) -> tuple[str, ...]:
