@@ -169,10 +169,11 @@ vec4 march_planes() {
         vec2 next_to = vec2(nearness(depth_at(pixel - next)), nearness(depth_at(pixel + next)));
         vec2 beyond = vec2(nearness(depth_at(pixel - 2 * next)), nearness(depth_at(pixel + 2 * next)));
         slope[axis] = nearness_slope(here, next_to, beyond);
-        // A surface that bends as much as it slopes on both sides is an edge, or thinner than a pixel: it counts as
-        // facing the camera.
-        vec2 bend = mix(abs(beyond - 2.0 * next_to + here), abs(next_to - here), equal(beyond, vec2(0.0))) / here;
-        slope[axis] *= clamp(2.0 - min(bend.x, bend.y) / max(abs(slope[axis]), 1e-9), 0.0, 1.0);
+        // A surface that bends on both sides as much as it rises there is an edge, or thinner than a pixel: it counts as
+        // facing the camera. Its neighbors are other surfaces, and a plane through them would hide rays beside it.
+        vec2 rise = abs(next_to - here), bend = mix(abs(beyond - 2.0 * next_to + here), rise, equal(beyond, vec2(0.0)));
+        vec2 bent = bend / max(rise, 1e-9 * here);
+        slope[axis] *= clamp(3.0 - 3.0 * min(bent.x, bent.y), 0.0, 1.0);
     }
     return vec4(here * vec3(1.0, slope), 0.0);
 }

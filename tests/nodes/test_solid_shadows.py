@@ -110,3 +110,28 @@ def test_a_large_picture_has_the_whole_shadow(run):
     shadow = run(node, {"depth": depth, "camera": camera}, output="shadow")[..., 0]
     assert dark.sum() > 50000
     assert (dark & (shadow > 0.01)).sum() == 0
+
+
+@pytest.mark.parametrize("side", [0.08, 0.15, 0.3])
+@pytest.mark.parametrize("lean", [0.05, 0.12])
+def test_a_side_thinner_than_a_pixel_hides_no_ray_behind_it(run, lean, side):
+    """A wall in the sun beyond a tower, whose right side is seen at a grazing angle and leans in the picture.
+
+    All rays pass more than a tower's depth behind its back, so no part of the wall is in its shadow. `side` is the
+    width of the side in the picture, as a part of the place of its edge.
+    """
+    size, eye = (240, 135), np.array([0.0, 0.0, 0.0])
+    camera = look_at(tuple(eye), (0.0, 1.0, 0.0), (0.6, 0.6 * size[0] / size[1]), (lean, 0.0, 1.0))
+    way = rays(camera, *size)
+    low, high = np.array([-1.0, 7.0, -9.0]), np.array([-side, 8.0, 9.0])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        one, two = (low - eye) / way, (high - eye) / way
+    enter, leave = np.fmin(one, two).max(-1), np.fmax(one, two).min(-1)
+    tower = (enter < leave) & (enter > 0.0)
+    depth = np.where(tower, enter, 10.0 / way[..., 1])
+    grazed = tower & (np.abs(way[..., 0] * enter + side) < 1e-6)
+    assert grazed.sum() > 10  # so that there is something to do wrong
+    values = {"direction": (-0.9, -0.1, 0.3), "softness": 0.0, "length": 4.0, "thickness": 1.0}
+    shadow = run(ContactShadows(**values), {"depth": depth, "camera": camera}, output="shadow")[..., 0]
+    wall = ~binary_dilation(tower, iterations=2)
+    assert wall.sum() > 5000 and shadow[wall].min() == 1.0
