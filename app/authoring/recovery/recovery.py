@@ -12,7 +12,6 @@ import secrets
 import threading
 import time
 from collections.abc import Iterator
-from importlib import metadata
 from pathlib import Path
 
 import msgspec
@@ -26,6 +25,7 @@ from ...language.translation import translate
 from ...resources.atomic_write import find_temporary_files, write_text_atomically
 from ...resources.sandbox import UNRESTRICTED, Sandbox
 from ...resources.typed_data import decode_data
+from ...version import VERSION
 from .claims import DocumentClaim
 from .file_locks import is_held, lock
 
@@ -232,7 +232,7 @@ def _text(graph: Graph, path: Path | None) -> str:
         _plain(path.absolute()) if path else "",
         _plain(Path(graph.folder).absolute()),
         time.time(),
-        metadata.version("halation"),
+        VERSION,
         len(graph.nodes),
     )
     return msgspec.json.encode(record).decode()

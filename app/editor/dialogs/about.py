@@ -10,6 +10,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...language.translation import translate
+from ...version import VERSION
 from ..theme.style import ui_scale
 from ..toolkit.buttons import close_button, quiet_button
 from ..toolkit.dialogs import backdrop, dialog, escape_pressed
@@ -68,7 +69,7 @@ class AboutDialog:
 def list_versions() -> list[tuple[str, str]]:
     """Names and versions of Halation, of the system and of the libraries that it stands on."""
     return [
-        ("Halation", metadata.version("halation")),
+        ("Halation", VERSION),
         ("Python", platform.python_version()),
         (translate("System"), platform.platform(terse=True)),
         *((name, metadata.version(name)) for name in _LIBRARIES),

@@ -6,7 +6,7 @@ import os
 import warnings
 from typing import Any
 
-from imgui_bundle import hello_imgui  # noqa: F401  (first: both must use the same window library)
+from . import window_library  # noqa: F401  (first: it says which copy of the library `glfw` loads)
 
 import glfw  # isort: skip
 

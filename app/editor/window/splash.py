@@ -1,68 +1,68 @@
-"""The small window that is there while the editor loads: a line grows in it."""
+"""The small window that is there while the editor loads: a line grows in it.
+
+It comes in two steps. The window opens with nothing but the line, by four functions of OpenGL, before anything large is
+imported. What it says is drawn when the library of the interface is there.
+"""
 
 from __future__ import annotations
 
 import ctypes
 import sys
-from pathlib import Path
 from threading import Thread
 from typing import Any
 
-import imgui_bundle
-from imgui_bundle import imgui
+from .opengl import open_hidden_window
 
 import glfw  # isort: skip
 
-from ...language.translation import translate
-from ...version import VERSION
-from .opengl import open_hidden_window
-
-_SIZE = (420, 130)
-_FONTS = Path(imgui_bundle.__file__).parent / "assets" / "fonts" / "Roboto"
+SIZE = (420, 130)
+GROUND, LINE = (0.114, 0.114, 0.125), (0.91, 0.514, 0.227)
+"""Those of the dark theme, as files of preferences are not read yet."""
+LINE_HEIGHT = 3.0
+_LEAST = 0.02
+"""The part of the line that is there from the start."""
 _MODULES = 1300
 """About as many modules as the program has when the editor is loaded."""
 _PAUSE = 0.03
 """Seconds between two pictures of the line."""
-
-_GROUND, _TEXT, _DIM, _LINE = (0.114, 0.114, 0.125), (0.894, 0.894, 0.906), (0.69, 0.69, 0.718), (0.91, 0.514, 0.227)
-"""Those of the dark theme, as files of preferences are not read yet."""
+_COLOR_BUFFER_BIT, _SCISSOR_TEST = 0x4000, 0x0C11
+_INTERVAL = 0.0005
+"""Seconds after which the thread that loads lets this one draw: with the usual 0.005 each call waits as long."""
 
 
 class Splash:
-    """The window. It stays until `close`, with its last picture, while another window comes up beside it.
+    """The window, with the beginning of its line. It stays until `close`, while another window comes up beside it.
 
     `version` is the OpenGL that it has, and that windows can have here. Raises DeviceError where none opens.
     """
 
     def __init__(self) -> None:
         self._window: Any
-        self._window, self.version = open_hidden_window(_SIZE, "Halation starts")
+        self._window, self.version = open_hidden_window(SIZE, "Halation starts")
         left, top, width, height = glfw.get_monitor_workarea(glfw.get_primary_monitor())
         self._scale = 1.0 if sys.platform == "darwin" else glfw.get_monitor_content_scale(glfw.get_primary_monitor())[0]
-        size = round(_SIZE[0] * self._scale), round(_SIZE[1] * self._scale)
+        size = round(SIZE[0] * self._scale), round(SIZE[1] * self._scale)
         glfw.set_window_size(self._window, *size)
         glfw.set_window_pos(self._window, left + (width - size[0]) // 2, top + (height - size[1]) // 2)
         glfw.make_context_current(self._window)
-        self._context = imgui.create_context()
-        imgui.get_io().set_ini_filename("")
-        address = ctypes.cast(self._window, ctypes.c_void_p).value
-        imgui.backends.glfw_init_for_opengl(address or 0, False)
-        imgui.backends.opengl3_init("#version 410")
-        fonts = imgui.get_io().fonts
-        self._text = fonts.add_font_from_file_ttf(str(_FONTS / "Roboto-Regular.ttf"), 0.0)
-        self._bold = fonts.add_font_from_file_ttf(str(_FONTS / "Roboto-Bold.ttf"), 0.0)
         glfw.show_window(self._window)
+        self._draw_line()
 
     def follow(self, loading: Thread) -> None:
         """Show how far a thread is that imports modules, until it ends."""
-        before = len(sys.modules)
-        while loading.is_alive():
-            self._draw((len(sys.modules) - before) / (_MODULES - before))
-            loading.join(_PAUSE)
-        self._draw(1.0)
-        imgui.backends.opengl3_shutdown()
-        imgui.backends.glfw_shutdown()
-        imgui.destroy_context(self._context)
+        before, interval = len(sys.modules), sys.getswitchinterval()
+        sys.setswitchinterval(_INTERVAL)
+        try:
+            from .splash_text import SplashText
+
+            text = SplashText(self._window, self._scale)
+            while loading.is_alive():
+                text.draw(max((len(sys.modules) - before) / (_MODULES - before), _LEAST))
+                loading.join(_PAUSE)
+            text.draw(1.0)
+            text.close()
+        finally:
+            sys.setswitchinterval(interval)
 
     def close(self) -> None:
         """Close the window, once."""
@@ -70,24 +70,25 @@ class Splash:
             glfw.destroy_window(self._window)
             self._window = None
 
-    def _draw(self, share: float) -> None:
+    def _draw_line(self) -> None:
+        """Clear the window, and the beginning of the line."""
+        width, height = glfw.get_framebuffer_size(self._window)
+        functions = {
+            name: ctypes.cast(glfw.get_proc_address(name), ctypes.CFUNCTYPE(None, *kinds))
+            for name, kinds in {
+                "glClearColor": (ctypes.c_float,) * 4,
+                "glClear": (ctypes.c_uint,),
+                "glEnable": (ctypes.c_uint,),
+                "glDisable": (ctypes.c_uint,),
+                "glScissor": (ctypes.c_int,) * 4,
+            }.items()
+        }
         glfw.poll_events()
-        imgui.backends.opengl3_new_frame()
-        imgui.backends.glfw_new_frame()
-        imgui.new_frame()
-        canvas, scale = imgui.get_background_draw_list(), self._scale
-        width, height = (side * scale for side in _SIZE)
-        margin, line = 28.0 * scale, 3.0 * scale
-        canvas.add_rect_filled((0.0, 0.0), (width, height), _pack(_GROUND))
-        canvas.add_text(self._bold, 30.0 * scale, (margin, 24.0 * scale), _pack(_TEXT), "Halation")
-        below = (margin, 70.0 * scale)
-        canvas.add_text(self._text, 15.0 * scale, below, _pack(_DIM), translate("Version {version}", version=VERSION))
-        end = width * min(max(share, 0.02), 1.0)
-        canvas.add_rect_filled((0.0, height - line), (end, height), _pack(_LINE))
-        imgui.render()
-        imgui.backends.opengl3_render_draw_data(imgui.get_draw_data())
+        functions["glClearColor"](*GROUND, 1.0)
+        functions["glClear"](_COLOR_BUFFER_BIT)
+        functions["glEnable"](_SCISSOR_TEST)
+        functions["glScissor"](0, 0, round(width * _LEAST), round(height * LINE_HEIGHT / SIZE[1]))
+        functions["glClearColor"](*LINE, 1.0)
+        functions["glClear"](_COLOR_BUFFER_BIT)
+        functions["glDisable"](_SCISSOR_TEST)
         glfw.swap_buffers(self._window)
-
-
-def _pack(color: tuple[float, float, float]) -> int:
-    return imgui.get_color_u32((*color, 1.0))

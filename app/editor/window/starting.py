@@ -7,6 +7,7 @@ from importlib import import_module
 from pathlib import Path
 from threading import Thread
 
+from ...resources.collection import pause_collection
 from ...resources.sandbox import Sandbox
 from .opengl import find_version, has_visible_window
 from .splash import Splash
@@ -18,13 +19,14 @@ def start_editor(path: Path | None, bindings: Mapping[str, str], sandbox: Sandbo
     Raises DeviceError where no window can be opened, DocumentError for a file that cannot be read, KeyboardInterrupt if
     it was interrupted.
     """
-    loading = Thread(target=import_module, args=(".opening", __package__), name="loading", daemon=True)
-    loading.start()  # most of a start are imports: they go on while the system opens a window
     splash = Splash() if has_visible_window() else None
-    version = splash.version if splash is not None else find_version()
-    if splash is not None:
-        splash.follow(loading)
-    loading.join()
+    with pause_collection():
+        loading = Thread(target=import_module, args=(".opening", __package__), name="loading", daemon=True)
+        loading.start()  # most of a start are imports
+        version = splash.version if splash is not None else find_version()
+        if splash is not None:
+            splash.follow(loading)
+        loading.join()
     from .opening import open_window
 
     try:
