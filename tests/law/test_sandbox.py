@@ -24,6 +24,7 @@ ENVIRONMENT = {
     "cli/watchdog.py": "where a watched process, started or forked, writes its heartbeat",
     "color/management.py": "OCIO, the color config of the user, and how much OpenColorIO logs",
     "editor/window/opengl.py": "HALATION_WINDOW: whether the window is visible",
+    "editor/window/window_library.py": "PYGLFW_LIBRARY, by which `glfw` knows the copy that it loads",
     "language/system_language.py": "the language of the user",
     "media/limits.py": "HALATION_MAX_PIXELS",
     "regression/parallel.py": "the threads of a worker process, at its start",

@@ -1,10 +1,11 @@
-"""What the small window says while the editor loads, drawn by the library of the interface."""
+"""What the small window says while the editor loads, drawn by the library of the interface: `follow_loading`."""
 
 from __future__ import annotations
 
 import ctypes
+import sys
 from pathlib import Path
-from typing import Any
+from threading import Thread
 
 import imgui_bundle
 from imgui_bundle import imgui
@@ -13,20 +14,41 @@ import glfw  # isort: skip
 
 from ...language.translation import translate
 from ...version import VERSION
-from .splash import GROUND, LINE, LINE_HEIGHT, SIZE
+from .splash import GROUND, LEAST, LINE, LINE_HEIGHT, SIZE, Splash
 
 _FONTS = Path(imgui_bundle.__file__).parent / "assets" / "fonts" / "Roboto"
 _TEXT, _DIM = (0.894, 0.894, 0.906), (0.69, 0.69, 0.718)
+_MODULES = 1230
+"""About as many modules as the program has when the editor is loaded."""
+_PAUSE = 0.03
+"""Seconds between two pictures of the line."""
+_INTERVAL = 0.0005
+"""Seconds after which the thread that loads lets this one draw: with the usual 0.005 each call waits as long."""
 
 
-class SplashText:
-    """Draws the window, whose OpenGL is current: name, version, and how far the line is. `close` ends the library."""
+def follow_loading(splash: Splash, loading: Thread) -> None:
+    """Show how far a thread is that imports modules, until it ends."""
+    before, interval = len(sys.modules), sys.getswitchinterval()
+    sys.setswitchinterval(_INTERVAL)
+    try:
+        text = _SplashText(splash)
+        while loading.is_alive():
+            text.draw(max((len(sys.modules) - before) / (_MODULES - before), LEAST))
+            loading.join(_PAUSE)
+        text.draw(1.0)
+        text.close()
+    finally:
+        sys.setswitchinterval(interval)
 
-    def __init__(self, window: Any, scale: float) -> None:
-        self._window, self._scale = window, scale
+
+class _SplashText:
+    """Draws name, version, and how far the line is. `close` ends the library."""
+
+    def __init__(self, splash: Splash) -> None:
+        self._window, self._scale = splash.window, splash.scale
         self._context = imgui.create_context()
         imgui.get_io().set_ini_filename("")
-        address = ctypes.cast(window, ctypes.c_void_p).value
+        address = ctypes.cast(self._window, ctypes.c_void_p).value
         imgui.backends.glfw_init_for_opengl(address or 0, False)
         imgui.backends.opengl3_init("#version 410")
         fonts = imgui.get_io().fonts

@@ -25,7 +25,9 @@ def start_editor(path: Path | None, bindings: Mapping[str, str], sandbox: Sandbo
         loading.start()  # most of a start are imports
         version = splash.version if splash is not None else find_version()
         if splash is not None:
-            splash.follow(loading)
+            from .splash_text import follow_loading
+
+            follow_loading(splash, loading)
         loading.join()
     from .opening import open_window
 
