@@ -7,6 +7,7 @@ import subprocess
 import sys
 import traceback
 import warnings
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from exr_files import write_exr
 from halation import document
 from halation.export import ExportOrder
 from halation.export.python.library import load_library
+from halation.export.python.numbers import DERIVED
 from halation.export.python.script import export_script
 from halation.graph import Graph, Port
 from halation.nodes import Kind, Node, Value, catalogue
@@ -37,11 +39,15 @@ class NoHalation:
                 raise ImportError(name + ": a script may import numpy, scipy and OpenImageIO only")
 
 sys.meta_path.insert(0, NoHalation())
-for script, out in zip(sys.argv[1::2], sys.argv[2::2]):
-    sys.argv = [script, "-o", out]
+count = int(sys.argv[1])
+options, pairs = sys.argv[2 : 2 + count], sys.argv[2 + count :]
+for script, out in zip(pairs[::2], pairs[1::2]):
+    sys.argv = [script, "-o", out, *options]
     runpy.run_path(script, run_name="__main__")
 """
-"""A Python in which Halation and what it stands on cannot be imported. It runs pairs of scripts and outputs."""
+"""A Python in which Halation and what it stands on cannot be imported. It runs pairs of scripts and outputs.
+
+All have the same options, whose number comes first."""
 
 
 def list_nodes() -> list[str]:
@@ -114,15 +120,21 @@ def make_graph(file: Path, node: type[Node], values: dict[str, Any], linked: tup
 
 
 def choose_values(node: type[Node], random: np.random.Generator) -> dict[str, Any]:
-    """Values at random in their soft ranges, as a graph file holds them; lengths are small, as the picture is."""
+    """Values at random in their soft ranges, as a graph file holds them; lengths are small, as the picture is.
+
+    Corners stay convex: beside a horizon places lie 10,000 pixels away, where floats of 32 bits have hundredths.
+    """
     function = load_library().definitions[node.id]
     known = {parameter.name: parameter for parameter in function.parameters}
     chosen: dict[str, Any] = {}
     for name, value in node.values.items():
         if name in known and known[name].choices:
             chosen[name] = known[name].choices[random.integers(len(known[name].choices))]
-        elif name in known or (value.type == "choice" and name in ("palette", "preset", "direction", "normalize")):
+        elif name in known or (value.type == "choice" and name in DERIVED.get(node.id, ((),))[0]):
             chosen[name] = choose_value(value, random)
+            if node.id == "corner_pin" and value.type == "vector":
+                place: Any = value.default
+                chosen[name] = [at + 0.4 * (part - 0.5) for at, part in zip(place, chosen[name], strict=True)]
     return {name: value for name, value in chosen.items() if value is not None}
 
 
@@ -158,20 +170,20 @@ def render_outputs(graph: Graph, renderer: Renderer, names: list[str]) -> dict[s
     return renderer.render(graph, RenderRequest({}, targets, precision="float"))
 
 
-def export_output(graph: Graph, name: str, path: Path) -> str:
+def export_output(graph: Graph, name: str, path: Path, node: str = "it") -> str:
     """Export an output of the node as a script, and return its text."""
-    order = ExportOrder(graph, path.stem, Port("it", name), UNRESTRICTED, lambda: None, path)  # pyright: ignore
+    order = ExportOrder(graph, path.stem, Port(node, name), UNRESTRICTED, lambda: None, path)  # pyright: ignore
     export_script(order)
     return path.read_text("utf-8")
 
 
-def run_scripts(pairs: list[tuple[Path, Path]], is_fresh: bool = True) -> None:
+def run_scripts(pairs: list[tuple[Path, Path]], is_fresh: bool = True, options: Sequence[str] = ()) -> None:
     """Run scripts in a process of a plain Python.
 
     One that is not fresh is a copy of this process, where the system has copies: numpy, scipy and OpenImageIO, which
     take half a second to start, are there, and Halation cannot be imported either.
     """
-    words = [str(path) for pair in pairs for path in pair]
+    words = [str(len(options)), *options, *(str(path) for pair in pairs for path in pair)]
     if is_fresh or sys.platform != "linux":
         subprocess.run([sys.executable, "-c", PLAIN_PYTHON, *words], check=True, timeout=600)
         return

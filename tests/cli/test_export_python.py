@@ -244,7 +244,6 @@ def test_links_to_values_masks_groups_and_sizes(cli, graphs, tmp_path: Path) -> 
             {"nodes": {"odd": {"type": "depth_of_field"}}},
             "node 'odd': there is no numpy text for 'depth_of_field' (its reference is Blender's",
         ),
-        ({"nodes": {"odd": {"type": "feedback"}}}, "node 'odd': it reads other frames"),
         ({"nodes": {"odd": {"type": "dither"}}}, "does not know 'pattern': 'blue noise'"),
         ({"nodes": {"odd": {"type": "gaussian_blur", "values": {"edge": "panorama"}}}}, "'edge': 'panorama'"),
         ({"nodes": {"odd": {"type": "invert"}}, "settings": {"color": {"working": "ACEScg"}}}, "working space"),

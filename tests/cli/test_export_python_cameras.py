@@ -11,9 +11,10 @@ from exr_files import write_exr
 from geometry import ball
 from halation.errors import GraphError
 from halation.export.python.functions import cameras
+from halation.graph import Port
 from halation.nodes import CameraModel, look_at
 from halation.presets import sample
-from halation.renderer import Renderer, open_device
+from halation.renderer import Renderer, RenderRequest, open_device
 from halation.resources.sandbox import UNRESTRICTED
 from numpy_scripts import export_output, load_graph, render_outputs, run_scripts
 
@@ -121,10 +122,32 @@ def test_a_camera_is_that_of_the_node(eye, target, up) -> None:
     np.testing.assert_allclose(cameras.camera_axes(rows), axes, atol=1e-12)
 
 
-def test_a_camera_that_moves_is_refused(tmp_path: Path) -> None:
-    """Its velocity is that of two frames, and a script makes each alone."""
+def test_a_camera_that_moves_is_read_at_other_frames(renderer, tmp_path: Path) -> None:
+    """Its velocity is that since the frame before, and to the frame after."""
     graph = make_graph(write_scene(tmp_path), "camera_velocity", DEPTH, {}, camera="here.camera")
     graph["settings"]["frames"] = [1, 4]
-    graph["animation"] = {"here.focal": {"keys": [{"frame": 1, "value": 40.0}, {"frame": 4, "value": 50.0}]}}
-    with pytest.raises(GraphError, match="node 'it': it reads other frames"):
+    keys = [{"frame": 1, "value": 40.0}, {"frame": 3, "value": 55.0}, {"frame": 4, "value": 50.0}]
+    graph["animation"] = {"here.focal": {"keys": keys}}
+    loaded = load_graph(tmp_path / "graph.json", graph)
+    export_output(loaded, "velocity", tmp_path / "it.py")
+    run_scripts([(tmp_path / "it.py", tmp_path / "it.#.npy")], is_fresh=False, options=("--frames", "1", "4"))
+    pictures: list[np.ndarray] = []
+    for frame in range(1, 5):
+        request = RenderRequest({}, {"it": Port("it", "velocity")}, frame=frame, precision="float")
+        pictures.append(renderer.render(loaded, request)["it"])
+        made, largest = np.load(tmp_path / f"it.{frame}.npy"), np.abs(pictures[-1]).max()
+        np.testing.assert_allclose(made, pictures[-1], atol=1e-4 * largest)
+    assert np.abs(pictures[1] - pictures[2]).max() > 1.0
+
+
+def test_a_camera_of_a_file_that_moves_is_refused(tmp_path: Path) -> None:
+    """A script has it as numbers, of one frame."""
+    for frame in (1, 2):
+        camera = look_at((3.0, -7.0, float(frame)), TARGET, (FOCAL, FOCAL * WIDTH / HEIGHT))
+        seen = ball(camera, TARGET, 2.9, WIDTH, HEIGHT)
+        layers = {name: np.atleast_3d(seen[name.lower()]).astype(np.float32) for name in ("Depth", "Position")}
+        write_exr(tmp_path / f"shot.{frame}.exr", layers, dict.fromkeys(layers, "float"))
+    graph = make_graph(write_scene(tmp_path), "camera_velocity", DEPTH, {}, camera="solved.camera")
+    graph["nodes"]["solved"]["values"] = {"path": str(tmp_path / "shot.#.exr"), "missing": "hold"}
+    with pytest.raises(GraphError, match="node 'solved': its camera is read at several frames"):
         export_output(load_graph(tmp_path / "graph.json", graph), "velocity", tmp_path / "no.py")

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from halation.graph import Port
+from halation.nodes.time.freeze import Freeze
 from halation.nodes.time.time_offset import TimeOffset
+from halation.nodes.time.time_speed import TimeSpeed
 from halation.renderer import RenderRequest
 from sequences import node_at, noise_at, noise_graph
 
@@ -27,3 +29,11 @@ def test_offsets_add_up(renderer):
 def test_it_costs_no_pass(renderer):
     graph = noise_graph(TimeOffset(frames=2)).remove_output("noise")
     assert len(renderer.compile(graph, RenderRequest(frame=5)).passes) == 1
+
+
+@pytest.mark.parametrize(
+    "node", [TimeOffset(frames=3), Freeze(frame=7), TimeSpeed(speed=2.0)], ids=lambda node: node.id
+)
+def test_a_muted_node_changes_no_time(renderer, node):
+    graph = noise_graph(node).mute("node")
+    assert np.array_equal(node_at(renderer, graph, 4), noise_at(renderer, graph, 4))

@@ -121,7 +121,7 @@ class GraphAtFrames:
         path, frame = moment
         flat = self.flat_at(frame)
         node, linked = flat.nodes[path], flat.linked.get(path, ())
-        times = node.times(frame)
+        times: Mapping[str, tuple[int, ...]] = {} if path in flat.muted else node.times(frame)
         feeds: dict[str, Feed] = {}
         if len(linked) == 1:  # the usual case
             names = linked if linked[0] in node.inputs or linked[0] in node.values else ()

@@ -3,6 +3,7 @@
 - `functions` has what nodes do, as short functions for readers: one for each node that can be exported.
 - `library` reads their text, and finds all that a function needs.
 - `outline` follows the graph, and says which function is called with what.
+- `parts` finds what is read at several frames, which becomes functions of the frame, and what runs frame by frame.
 - `numbers` writes values as text: lengths as parts of the height, angles in degrees, animated values as tables.
 - `script` puts the text together.
 

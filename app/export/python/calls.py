@@ -2,53 +2,109 @@
 
 from __future__ import annotations
 
+import re
+from functools import cached_property
 from typing import Any
 
-from halation.nodes import INVERT_MASK, MASK, MASKED, MIX, CameraModel, Filter, Kind, Node, Size, Socket, Value
+from halation.nodes import INVERT_MASK, MASK, MASKED, MIX, CameraModel, Filter, Kind, Node, Size, Socket
 
 from ...compiler import Ref
 from ...compiler.ir import Operand, PlannedObject, UniformConstant
 from ...compiler.lowering.expand import find_stand_in, make_zero
 from ...compiler.lowering.masks import hides_node, is_masked
 from ...compiler.lowering.node_inputs import takes_field
-from ...compiler.lowering.steps import field_port
 from ...errors import GraphError
 from ...graph import Port
 from ..order import ExportOrder
 from .formulas import FunctionText
 from .library import Definition, FunctionParameter, load_library
-from .numbers import DERIVED, Plain, find_unit, list_settings, write_exactly, write_plain, write_quantity
-from .outline import LoweredGraph, NameTable, PictureInput, ScriptCall, ScriptOutline
+from .numbers import (
+    DERIVED,
+    Plain,
+    count_channels,
+    find_unit,
+    list_settings,
+    write_bound,
+    write_exactly,
+    write_plain,
+    write_quantity,
+)
+from .outline import LoweredGraph, NameTable, ScriptCall, ScriptClip, ScriptOutline
+from .parts import MAIN, find_key, has_memory, plan_parts
 
 
 class CallWriter:
     """Writes the calls of one output of a graph."""
 
     def __init__(self, order: ExportOrder) -> None:
-        self.lowered = LoweredGraph(order)
-        self.outline = ScriptOutline(self.lowered.size_of(self.lowered.output), self.lowered.frames, self.lowered.frame)
-        self._names, self._variables = NameTable(), dict[Port, str]()
+        lowered = self.lowered = LoweredGraph(order)
+        self.outline = ScriptOutline(lowered.size_of(lowered.output), lowered.frames, lowered.frame)
+        self._names = NameTable()
+        self._plan = plan_parts(
+            lowered.flat,
+            lowered.paths,
+            lowered.source,
+            lowered.feeds_of,
+            lowered.list_clips,
+            lowered.is_written_anywhere,
+        )
+        self._clips = {
+            key: ScriptClip(self._names.choose(f"{key.removeprefix('inputs.')}_at"), lowered.spans.get(key, 1))
+            for key in self._plan.clips
+        }
+        self._variables = {part: dict[Port, str]() for part in (MAIN, *self._clips)}
+        self._input_names = dict[Port, str]()
+        self._part, self._calls = MAIN, self.outline.calls
 
     def write(self) -> ScriptOutline:
         """The outline of the picture. Raises GraphError for what no function can do."""
-        for path in self.lowered.paths:
-            self._write_node(path)
-        text, operand = self._read(self.lowered.source, as_field=self.lowered.channels_of(self.lowered.output) != 4)
-        channels = self.lowered.channels_of(self.lowered.output)
-        self.outline.result = self._convert(text, operand, channels)
-        return self.outline
+        outline, plan, lowered = self.outline, self._plan, self.lowered
+        outline.rate, outline.preroll = lowered.rate, lowered.graph.settings.preroll
+        outline.read_frames, outline.clips = lowered.read_frames, list(self._clips.values())
+        outline.reads_inputs = bool(self._clips or plan.looped)
+        outline.uses_frame = outline.reads_inputs
+        for path in sorted(lowered.paths, key=lambda path: path not in plan.looped):
+            if path in plan.parts:
+                self._enter(plan.parts[path], path in plan.looped)
+                self._write_node(path)
+        for key, clip in self._clips.items():
+            self._enter(key)
+            clip.results = tuple(self._read(port, as_field=False)[0] for port in self._list_results(key))
+        self._enter(MAIN)
+        channels = lowered.channels_of(lowered.output)
+        text, operand = self._read(lowered.source, as_field=channels != 4)
+        outline.result = self._convert(text, operand, channels)
+        return outline
+
+    def _enter(self, part: str, is_looped: bool = False) -> None:
+        """Write into a part from now on."""
+        outline = self.outline
+        self._part = part
+        self._calls = self._clips[part].calls if part else outline.loop if is_looped else outline.calls
 
     # --- what is read -----------------------------------------------------------------------------------------------
 
-    def _read(self, port: Port, as_field: bool) -> tuple[str, Operand]:
-        """The text of a port, and what the compiler makes of it."""
-        results = self.lowered.results
-        if as_field and (operand := results.get((field_port(port), 0))) is not None:
-            return f"{self._variables[port]}[..., :1]", operand
-        operand = results[port, 0]
-        if port in self._variables:
-            return self._variables[port], operand
-        return self._declare_input(port, operand), operand
+    @cached_property
+    def _read_ports(self) -> set[Port]:
+        """The ports that something reads."""
+        lowered = self.lowered
+        return {lowered.source} | {source for path in lowered.paths for source in lowered.feeds_of(path).values()}
+
+    def _list_results(self, key: str) -> list[Port]:
+        """What a function of the frame returns."""
+        return sorted(port for port in self._read_ports if find_key(self.lowered.flat, port) == key)
+
+    def _read(self, port: Port, as_field: bool, at: str = "frame") -> tuple[str, Operand]:
+        """The text of a port, and what the compiler makes of it. `at` is the frame at which a function is called."""
+        field = self.lowered.field_of(port) if as_field else None
+        operand = field if field is not None else self.lowered.result_of(port)
+        key = find_key(self.lowered.flat, port)
+        if self._plan.parts.get(key, self._part) != self._part:
+            results = self._list_results(key)
+            text = f"{self._clips[key].name}({at})" + (f"[{results.index(port)}]" if len(results) > 1 else "")
+        else:
+            text = self._variables[self._part].get(port) or self._declare_input(port, operand)
+        return (f"{text}[..., :1]" if field is not None else text), operand
 
     def _declare_input(self, port: Port, operand: Operand) -> str:
         """The variable of an input of the graph; the text of a number."""
@@ -56,21 +112,23 @@ class CallWriter:
             return self._declare_camera(port, operand.content)
         if isinstance(operand, UniformConstant):
             return self._write_constant(operand.value)
-        assert isinstance(operand, Ref)
-        picture = self.lowered.find_picture(port)
-        name = self._names.choose(port.socket if "/" not in port.node else f"{port.node}_{port.socket}")
-        self._variables[port] = name
-        self.outline.inputs[name] = PictureInput(
-            picture.path, picture.layer, self.lowered.channels_of(operand), self.lowered.size_of(operand)
-        )
+        outline = self.outline
+        if port not in self._input_names:
+            name = self._names.choose(port.socket if "/" not in port.node else f"{port.node}_{port.socket}")
+            self._input_names[port] = name
+            outline.inputs[name] = self.lowered.find_input(port)
+            outline.uses_frame |= outline.inputs[name].is_numbered
+        name = self._variables[self._part][port] = self._input_names[port]
+        if outline.reads_inputs:
+            self._calls.append(ScriptCall((name,), "read_input", (write_plain(name), "frame")))
         return name
 
     def _declare_camera(self, port: Port, camera: object) -> str:
         """The variable of a camera that comes from a file."""
         assert isinstance(camera, CameraModel)
-        name = self._variables[port] = self._names.choose(port.node)
+        name = self._variables[self._part][port] = self._names.choose(port.node)
         rows = tuple(camera.rows[at : at + 4] for at in (0, 4, 8))
-        self.outline.calls.append(ScriptCall((name,), "np.array", (write_exactly(rows),)))
+        self._calls.append(ScriptCall((name,), "np.array", (write_exactly(rows),)))
         return name
 
     def _write_constant(self, value: Any) -> str:
@@ -110,7 +168,7 @@ class CallWriter:
         node, lowered = self.lowered.flat.nodes[path], self.lowered
         if lowered.gives_camera_of_file(path):
             return
-        feeds = {name: source for name, (source, _) in lowered.at_frames.find_feeds((path, lowered.frame)).items()}
+        feeds = lowered.feeds_of(path)
         if (passed := self._find_passed(path, node, feeds)) is not None:
             self._pass_through(path, node, feeds, passed)
             return
@@ -118,7 +176,7 @@ class CallWriter:
             (
                 lowered.size_of(ref)
                 for name in node.outputs
-                if isinstance(ref := lowered.results[Port(path, name), 0], Ref)
+                if isinstance(ref := lowered.result_of(Port(path, name)), Ref)
             ),
             lowered.canvas or self.outline.size,
         )
@@ -127,7 +185,8 @@ class CallWriter:
         self.outline.functions[node.id] = None
         arguments = self._write_arguments(path, node, feeds, function, size, common)
         targets = self._name_outputs(path, node)
-        self.outline.calls.append(ScriptCall(targets, node.id, arguments))
+        memory = self.outline.memories[-1:] if has_memory(lowered.flat, path) else []
+        self._calls.append(ScriptCall((*targets, *memory), node.id, arguments))
         if is_masked(node, feeds):
             self._write_mask(node, feeds, targets[0], size)
 
@@ -154,14 +213,14 @@ class CallWriter:
     def _pass_through(self, path: str, node: Node, feeds: dict[str, Port], passed: dict[str, str | None]) -> None:
         for name, source in passed.items():
             port = Port(path, name)
-            operand = self.lowered.results[port, 0]
+            operand = self.lowered.result_of(port)
             if source is None or source not in feeds:
                 default = node.inputs[source].default if source else make_zero(node.outputs[name].socket)
-                self._variables[port] = self._write_constant(default if default is not None else 0.0)
+                self._variables[self._part][port] = self._write_constant(default if default is not None else 0.0)
                 continue
             text, before = self._read(feeds[source], takes_field(node.inputs[source]))
             size = self.lowered.size_of(operand) if isinstance(operand, Ref) else self.outline.size
-            self._variables[port] = self._fit(text, before, size)
+            self._variables[self._part][port] = self._fit(text, before, size)
 
     def _find_common_size(self, node: Node, feeds: dict[str, Port], size: Size) -> Size:
         """The size to which a node's pictures are fitted: that of its result, or for a filter of the first one."""
@@ -170,26 +229,21 @@ class CallWriter:
         for name, source in feeds.items():
             if name in node.inputs and node.inputs[name].own_size:
                 continue
-            operand = self.lowered.results.get((source, 0))
+            operand = self.lowered.result_of(source)
             if isinstance(operand, Ref) and self.lowered.size_of(operand) != (1, 1):
                 return self.lowered.size_of(operand)
         return size
 
     def _name_outputs(self, path: str, node: Node) -> tuple[str, ...]:
         """Variables of the outputs that something reads; `_` for the others."""
-        read = {self.lowered.source} | {
-            source
-            for other in self.lowered.paths
-            for source, _ in self.lowered.at_frames.find_feeds((other, self.lowered.frame)).values()
-        }
         targets: list[str] = []
         for at, name in enumerate(node.outputs):
             port = Port(path, name)
-            if port not in read:
+            if port not in self._read_ports:
                 targets.append("_")
                 continue
             targets.append(self._names.choose(path if at == 0 else f"{path}_{name}"))
-            self._variables[port] = targets[-1]
+            self._variables[self._part][port] = targets[-1]
         return tuple(targets)
 
     # --- arguments --------------------------------------------------------------------------------------------------
@@ -205,6 +259,8 @@ class CallWriter:
             name = parameter.name
             if name in node.inputs:
                 text = self._write_input(node.inputs[name], feeds.get(name), parameter, common)
+                if text is None and name in _NEIGHBORS and "before" not in feeds and self.lowered.list_clips(path):
+                    text, _ = self._read(feeds["camera"], False, f"frame{_NEIGHBORS[name]}")
                 if text is not None:
                     arguments.append(text if not parameter.has_default else f"{name}={text}")
             elif name in feeds:
@@ -217,10 +273,20 @@ class CallWriter:
                 own = ("WIDTH", "HEIGHT")[at]
                 arguments.append(f"{name}={own if size[at] == self.outline.size[at] else size[at]}")
             else:
-                assert name == "frame", f"{function.name}: nothing is known about its parameter '{name}'"
-                self.outline.uses_frame = True
-                arguments.append("frame=frame")
+                arguments.append(self._write_moment(path, name))
         return tuple(arguments)
+
+    def _write_moment(self, path: str, name: str) -> str:
+        """The frame, the frames per second, or what a node remembers of the frame before."""
+        if name == "frame":
+            self.outline.uses_frame = True
+            return "frame=frame"
+        if name == "rate":
+            self.outline.uses_rate = True
+            return "rate=RATE"
+        assert name == "memory", f"nothing is known about the parameter '{name}' of '{path}'"
+        self.outline.memories.append(self._names.choose(f"{path}_memory"))
+        return f"memory={self.outline.memories[-1]}"
 
     def _refuse_settings(
         self, path: str, node: Node, settings: list[dict[str, Plain]], feeds: dict[str, Port], names: list[str]
@@ -248,11 +314,16 @@ class CallWriter:
             if socket.channels > 1 and not isinstance(default, tuple):
                 default = (default,) * socket.channels
             return self._write_constant(default)
-        text, operand = self._read(source, takes_field(socket))
+        text, operand = self._read(source, takes_field(socket), "at" if parameter.takes_clip else "frame")
         if socket.kind is Kind.CAMERA:
             return text
         text = self._convert(text, operand, socket.channels)
-        return text if socket.own_size else self._fit(text, operand, common)
+        text = text if socket.own_size else self._fit(text, operand, common)
+        if not parameter.takes_clip:
+            return text
+        if isinstance(operand, UniformConstant) and not isinstance(operand.value, tuple) and socket.channels == 1:
+            text = f"np.full((1, 1, 1), {text})"
+        return text.removesuffix("(at)") if re.fullmatch(r"\w+\(at\)", text) else f"lambda at: {text}"
 
     def _write_wire(self, path: str, node: Node, parameter: FunctionParameter, source: Port, common: Size) -> str:
         """The text of a value that something is linked to, within its hard range."""
@@ -260,9 +331,9 @@ class CallWriter:
         if not parameter.takes_array:
             raise _refuse(path, f"its value '{parameter.name}' is linked, and numpy text takes only a number there")
         text, operand = self._read(source, value.type != "color")
-        text = self._fit(self._convert(text, operand, _count_channels(value)), operand, common)
+        text = self._fit(self._convert(text, operand, count_channels(value)), operand, common)
         if value.minimum != float("-inf") or value.maximum != float("inf"):
-            text = f"np.clip({text}, {_write_bound(value.minimum)}, {_write_bound(value.maximum)})"
+            text = f"np.clip({text}, {write_bound(value.minimum)}, {write_bound(value.maximum)})"
         unit = find_unit(node, parameter.name, self.lowered.flat.find_reference_height(path))
         return write_quantity(text, 1.0, unit, self._write_height(path))
 
@@ -273,26 +344,18 @@ class CallWriter:
                 raise _refuse(path, f"the numpy text for '{node.id}' does not know '{name}': {value!r}: choose another")
         if isinstance(values[0], FunctionText):
             self.outline.helpers.update(values[0].helpers)
-        self._note_choices(node, name, values)
+        self.outline.note_choices(node, name, values)
         unit = find_unit(node, name, self.lowered.flat.find_reference_height(path))
         text = write_plain(values[0])
         if len(set(values)) > 1:
             table = self._names.choose(f"{path}_{name}").upper()
             self.outline.tables[table], self.outline.uses_frame = values, True
-            text = f"{table}[frame - FRAMES[0]]"
+            start = "FRAMES" if self.lowered.read_frames == self.lowered.frames else "READ_FRAMES"
+            text = f"{table}[frame - {start}[0]]"
             return write_quantity(
                 text, values[0] if isinstance(values[0], tuple) else 1.0, unit, self._write_height(path)
             )
         return write_quantity(text, values[0], unit, self._write_height(path))
-
-    def _note_choices(self, node: Node, name: str, values: tuple[Plain, ...]) -> None:
-        """Enter what is chosen, so that functions need not hold the rest."""
-        outline = self.outline
-        texts = {value for value in values if isinstance(value, str)}
-        if texts:
-            outline.choices.setdefault((node.id, name), set()).update(texts)
-            outline.options.setdefault((node.id, name), set()).update(map(str, node.values[name].choices))
-        outline.switches.setdefault((node.id, name), set()).update(each for each in values if isinstance(each, bool))
 
     def _write_height(self, path: str) -> str:
         """The height that lengths of a node are parts of."""
@@ -315,10 +378,11 @@ class CallWriter:
             inverted = bool(node.setting(INVERT_MASK))
         arguments = [str(before), target, mask, f"mix={write_plain(float(node.setting(MIX)))}"]
         self.outline.helpers.add("mix_by_mask")
-        self.outline.calls.append(
-            ScriptCall((target,), "mix_by_mask", (*arguments, *(["inverted=True"] if inverted else [])))
-        )
+        self._calls.append(ScriptCall((target,), "mix_by_mask", (*arguments, *(["inverted=True"] if inverted else []))))
 
+
+_NEIGHBORS = {"before": " - 1", "after": " + 1"}
+"""The frames at which `camera_velocity` reads a camera that moves, where no other cameras are linked."""
 
 _SIDES = ("width", "height", "columns", "rows")
 """Parameters that get the size of the picture: the last two for nodes with a width and a height of their own."""
@@ -329,11 +393,3 @@ _PLAIN = FunctionParameter("", True, False)
 
 def _refuse(path: str, fault: str) -> GraphError:
     return GraphError(f"node '{path}': {fault}, or write it with --to glsl", node=path)
-
-
-def _count_channels(value: Value) -> int:
-    return 4 if value.type == "color" else value.length if value.type == "vector" else 1
-
-
-def _write_bound(bound: float) -> str:
-    return "None" if bound in (float("inf"), float("-inf")) else write_plain(bound)

@@ -13,12 +13,16 @@ _EDGES_OF_BODY = (ast.FunctionDef, ast.Lambda)
 
 
 class FunctionParameter(Struct, frozen=True):
-    """A parameter: whether it may vary from pixel to pixel, whether it has a default, and the choices that it knows."""
+    """A parameter: whether it may vary from pixel to pixel, whether it has a default, and the choices that it knows.
+
+    `takes_clip`: it is given a picture as a function of the frame.
+    """
 
     name: str
     takes_array: bool
     has_default: bool
     choices: tuple[object, ...] = ()
+    takes_clip: bool = False
 
 
 class Definition(Struct, frozen=True):
@@ -130,12 +134,14 @@ def _read_definitions(text: str, tree: ast.Module, aliases: Mapping[str, tuple[o
 def _read_parameters(node: ast.FunctionDef, aliases: Mapping[str, tuple[object, ...]]) -> tuple[FunctionParameter, ...]:
     arguments = node.args.args
     first_default = len(arguments) - len(node.args.defaults)
+    types = [{part.id for part in ast.walk(each) if isinstance(part, ast.Name)} for each in arguments]
     return tuple(
         FunctionParameter(
             each.arg,
-            "Array" in {part.id for part in ast.walk(each.annotation or each) if isinstance(part, ast.Name)},
+            "Array" in types[at],
             at >= first_default,
             _read_choices(each.annotation) or aliases.get(ast.unparse(each.annotation or ast.Constant(0)), ()),
+            "Clip" in types[at],
         )
         for at, each in enumerate(arguments)
     )

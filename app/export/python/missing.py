@@ -21,10 +21,6 @@ _REASONS = {
         "edge_extend", "inpaint", "screen_clean_plate",
     ),
     "its table was found by a long search": ("blue_noise",),
-    "it reads other frames, and a script makes each frame alone": (
-        "echo", "eye_adaptation", "feedback", "frame_average", "frame_blend", "freeze", "light_trails", "temporal_aa",
-        "temporal_accumulation", "time_offset", "time_speed",
-    ),
 }  # fmt: skip
 """Nodes by the reason why they have no function."""
 

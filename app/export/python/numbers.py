@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any
 
-from halation.nodes import Node, read_reference, resolve_length_unit
+from halation.nodes import Node, Value, read_reference, resolve_length_unit
 
 from .formulas import FunctionText, write_formula_text
 from .lamps import list_lamps
@@ -36,6 +36,7 @@ DERIVED: Mapping[str, tuple[tuple[str, ...], Callable[[Any, str], dict[str, Any]
         "gradient_map": (("palette", "ramp"), lambda node, _: {"ramp": node.resolve_ramp()}),
         "color_matrix": (("preset", "matrix", "direction"), lambda node, _: {"matrix": node.resolve_matrix()}),
         "convolve3x3": (("preset", "kernel", "normalize", "scale"), lambda node, _: {"kernel": node.weights()}),
+        "freeze": (("frame",), lambda node, _: {"held": node.frame}),
         "deferred_lighting": ((*_LAMPS, *_SHADOWS), list_lamps),
     }
 )
@@ -76,6 +77,16 @@ def write_plain(value: Plain) -> str:
     if isinstance(value, str) and repr(value) == f"'{value}'":
         return f'"{value}"'
     return repr(value)
+
+
+def count_channels(value: Value) -> int:
+    """The channels of a picture that gives a value."""
+    return 4 if value.type == "color" else value.length if value.type == "vector" else 1
+
+
+def write_bound(bound: float) -> str:
+    """One end of a range; None where it has none."""
+    return "None" if bound in (float("inf"), float("-inf")) else write_plain(bound)
 
 
 def write_exactly(value: float | tuple[Any, ...]) -> str:

@@ -15,11 +15,25 @@ from ..shipped_files import read_shipped_text
 from .calls import CallWriter
 from .library import Definition, FunctionLibrary, load_library
 from .numbers import write_plain
-from .outline import ScriptCall, ScriptOutline
+from .outline import ScriptCall, ScriptClip, ScriptOutline
 from .pruning import AskedChoices, prune
 
 _WIDTH = 110
 """Columns of the lines that a script has of its own: a few less than those of its functions."""
+
+
+_FILE_FUNCTIONS = ("file_of_frame", "read_picture", "write_picture")
+
+_READ_INPUT = '''
+@lru_cache(maxsize=8)
+def read_input(name: str, frame: int) -> Array:
+    """An input at a frame."""
+    file, layer, channels, width, height = INPUTS[name]
+    return read_picture(file_of_frame(file, frame), layer, channels, width, height)
+'''
+
+_MOST_KEPT = 32
+"""Frames of one function that a script keeps at most. Chosen by judgement: 2 GB of full HD."""
 
 
 def export_script(order: ExportOrder) -> ExportReport:
@@ -27,7 +41,7 @@ def export_script(order: ExportOrder) -> ExportReport:
     outline = CallWriter(order).write()
     text = write_script(order, outline)
     figures: dict[str, float | str] = {
-        "nodes": sum(call.function in outline.functions for call in outline.calls),
+        "nodes": sum(call.function in outline.functions for call in outline.list_calls()),
         "functions": len(outline.functions),
         "lines": len(text.splitlines()),
     }
@@ -43,18 +57,23 @@ def write_script(order: ExportOrder, outline: ScriptOutline) -> str:
     collected = library.collect([*sorted(outline.helpers), *outline.functions])
     nodes = [each for name in outline.functions for each in collected if each.name == name]
     shared = [each for each in collected if each not in nodes]
-    readers = ["read_picture"] if outline.inputs else []
-    files = [each for each in library.collect([*readers, "write_picture"]) if each not in collected]
+    files = [each for each in library.collect(_list_file_functions(outline)) if each not in collected]
     imports = [*library.list_imports([*collected, *files]), "import argparse", "import numpy as np"]
     if outline.inputs:
         imports.append("from pathlib import Path")
+    if outline.clips or (outline.reads_inputs and outline.inputs):
+        imports.append("from functools import lru_cache")
+    if outline.memories:
+        imports.append("from collections.abc import Iterator")
     sections = [
         "\n\n".join([_write_head(order, outline), _write_imports(imports), _write_constants(order, outline)]),
         *_write_section("Parts of pictures", shared),
         *_write_section("What nodes do", nodes),
         _write_title("The graph"),
-        _write_body(outline),
+        *(_write_clip(clip) for clip in outline.clips),
+        _write_frames(outline) if outline.memories else _write_body(outline),
         *_write_section("Files", files),
+        *([_READ_INPUT] if outline.reads_inputs and outline.inputs else []),
         _write_main(outline),
     ]
     return "\n\n\n".join(section.strip("\n") for section in sections) + "\n"
@@ -67,7 +86,14 @@ def _prune_library(outline: ScriptOutline) -> FunctionLibrary:
         {key: frozenset(texts) for key, texts in outline.options.items()},
         {key: frozenset(states) for key, states in outline.switches.items()},
     )
-    return prune(load_library(), [*sorted(outline.helpers), *outline.functions, "read_picture", "write_picture"], asked)
+    return prune(load_library(), [*sorted(outline.helpers), *outline.functions, *_FILE_FUNCTIONS], asked)
+
+
+def _list_file_functions(outline: ScriptOutline) -> list[str]:
+    """The functions that read and write files."""
+    unused = {"file_of_frame"} if not outline.uses_frame else set[str]()
+    unused |= {"read_picture"} if not outline.inputs else set[str]()
+    return [name for name in _FILE_FUNCTIONS if name not in unused]
 
 
 def _write_head(order: ExportOrder, outline: ScriptOutline) -> str:
@@ -75,10 +101,11 @@ def _write_head(order: ExportOrder, outline: ScriptOutline) -> str:
     title = order.name.replace("_", " ").replace('"""', "'''").replace("\\", "/").strip().capitalize()
     about = find_about(order.graph).doc.replace("\\", "/").replace('"""', "'''")
     needs = "numpy, scipy and, for files other than .npy, OpenImageIO"
+    main = "make_pictures" if outline.memories else "make_picture"
     example = next((f" -i {name}=frame.exr" for name in outline.inputs), "")
     paragraphs = [
         " ".join(about.split()),
-        f"The picture of a node graph by plain numpy, slowly: one function for each kind of node, and `make_picture`"
+        f"The picture of a node graph by plain numpy, slowly: one function for each kind of node, and `{main}`"
         f" calls them in the order of the graph. Written by Halation {VERSION}; needs {needs}.",
         f"    python {order.output.name if order.output else order.name + '.py'} -o picture.exr{example}",
         "Pictures are arrays [height, width, channels] of scene-linear light (linear Rec.709), row 0 at the top. An"
@@ -122,6 +149,10 @@ def _write_constants(order: ExportOrder, outline: ScriptOutline) -> str:
             f"FRAMES = ({outline.frames[0]}, {outline.frames[1]})  # the first and the last",
             f"FRAME = {outline.frame}",
         ]
+    if outline.read_frames != outline.frames and outline.tables:
+        lines.append(f"READ_FRAMES = ({outline.read_frames[0]}, {outline.read_frames[1]})  # in order to make these")
+    if outline.uses_rate:
+        lines.append(f"RATE = {write_plain(outline.rate)}  # frames per second")
     lines.append(f"OUTPUT = {write_plain(order.name + '.exr')}")
     if outline.inputs:
         lines += ["INPUTS = {  # file, layer, channels, width, height"]
@@ -157,32 +188,84 @@ def _write_section(title: str, definitions: list[Definition]) -> list[str]:
     return [_write_title(title), *(definition.text for definition in definitions)] if definitions else []
 
 
+def _write_clip(clip: ScriptClip) -> str:
+    """A function of the frame."""
+    lines = [
+        f"@lru_cache(maxsize={min(clip.span + 1, _MOST_KEPT)})",
+        f"def {clip.name}(frame: int) -> {'Array' if len(clip.results) == 1 else 'tuple[Array, ...]'}:",
+        '    """A part of the graph, at a frame."""',
+    ]
+    for call in clip.calls:
+        lines += _write_call(call)
+    return "\n".join([*lines, f"    return {', '.join(clip.results)}"])
+
+
 def _write_body(outline: ScriptOutline) -> str:
     """`make_picture`: one call after the other."""
-    parameters = [f"{name}: Array" for name in outline.inputs] + (["frame: int = FRAME"] if outline.uses_frame else [])
+    parameters = [] if outline.reads_inputs else [f"{name}: Array" for name in outline.inputs]
+    parameters += ["frame: int = FRAME"] if outline.uses_frame else []
     lines = [f"def make_picture({', '.join(parameters)}) -> Array:", '    """The picture of the graph."""']
     for call in outline.calls:
         lines += _write_call(call)
     return "\n".join([*lines, f"    return {outline.result}"])
 
 
-def _write_call(call: ScriptCall) -> list[str]:
+def _write_frames(outline: ScriptOutline) -> str:
+    """`make_pictures`, where nodes remember the frame before: one frame after the other, from the first one."""
+    start = "min(FRAMES[0], first)"
+    if outline.preroll is not None:
+        start = f"min(max(FRAMES[0], first - {outline.preroll}), first)"
+    lines = [
+        "def make_pictures(first: int, last: int) -> Iterator[Array]:",
+        '    """The pictures of the graph from a first to a last frame. What nodes remember begins before."""',
+        *(f"    {memory} = None" for memory in outline.memories),
+        f"    for frame in range({start}, last + 1):",
+    ]
+    for call in outline.loop:
+        lines += _write_call(call, 8)
+    if outline.calls:
+        lines += ["        if frame < first:", "            continue"]
+    for call in outline.calls:
+        lines += _write_call(call, 8)
+    if not outline.calls:
+        lines += ["        if frame >= first:", f"            yield {outline.result}"]
+    else:
+        lines += [f"        yield {outline.result}"]
+    return "\n".join(lines)
+
+
+def _write_call(call: ScriptCall, indent: int = 4) -> list[str]:
     """One call, on one line or with one argument on each."""
-    start = f"    {', '.join(call.targets)} = {call.function}("
+    start = f"{' ' * indent}{', '.join(call.targets)} = {call.function}("
     line = f"{start}{', '.join(call.arguments)})"
     if len(line) <= _WIDTH:
         return [line]
-    inner = f"        {', '.join(call.arguments)}"
+    inner = f"{' ' * indent}    {', '.join(call.arguments)}"
     if len(inner) <= _WIDTH:
-        return [start, inner, "    )"]
-    return [start, *(f"        {argument}," for argument in call.arguments), "    )"]
+        return [start, inner, f"{' ' * indent})"]
+    return [start, *(f"{' ' * indent}    {argument}," for argument in call.arguments), f"{' ' * indent})"]
 
 
 def _write_main(outline: ScriptOutline) -> str:
     """The command line of the script."""
-    arguments = (["**inputs"] if outline.inputs else []) + (["frame=words.frame"] if outline.uses_frame else [])
+    arguments = ["**inputs"] if outline.inputs and not outline.reads_inputs else []
+    arguments += ["frame=frame"] if outline.uses_frame else []
     text = read_shipped_text("script_main.py.txt").replace("#arguments#", ", ".join(arguments))
-    for mark, is_used in (("#inputs#", bool(outline.inputs)), ("#frame#", outline.uses_frame)):
-        lines = text.splitlines()
-        text = "\n".join(line.removeprefix(mark) for line in lines if is_used or not line.startswith(mark))
-    return text
+    has_frames, has_inputs = outline.uses_frame, bool(outline.inputs)
+    used = {
+        "#inputs#": has_inputs,
+        "#given#": has_inputs and not outline.reads_inputs and not has_frames,
+        "#still#": not has_frames,
+        "#frames#": has_frames,
+        "#tables#": bool(outline.tables),
+        "#each#": has_frames and not outline.memories,
+        "#each_given#": has_frames and has_inputs and not outline.reads_inputs,
+        "#run#": bool(outline.memories) and outline.preroll is None,
+        "#runs#": bool(outline.memories) and outline.preroll is not None,
+    }
+    lines: list[str] = []
+    for line in text.splitlines():
+        mark = next((mark for mark in used if line.startswith(mark)), "")
+        if not mark or used[mark]:
+            lines.append(line.removeprefix(mark))
+    return "\n".join(lines)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,27 @@ from .pixels import Array, premultiply_color, srgb_decode, srgb_encode, straight
 from .places import fit
 
 CHANNELS = {1: ["Y"], 2: ["X", "Y"], 3: ["X", "Y", "Z"], 4: ["R", "G", "B", "A"]}
+
+
+def file_of_frame(path: str, frame: int, new: bool = False) -> str:
+    """The file of a frame, of names such as shot.####.exr: `new`, or one that exists.
+
+    Where it is missing, it is the last one before it, or else the first of all.
+    """
+    folder, name = Path(path).parent, Path(path).name
+    if "#" not in name or (not new and Path(path).exists()):
+        return path
+
+    def number(at: int) -> str:
+        return re.sub("#+", lambda marks: f"{at:0{len(marks[0])}}", name)
+
+    if new or (folder / number(frame)).exists():
+        return str(folder / number(frame))
+    pattern = re.compile("(-?[0-9]+)".join(map(re.escape, re.split("#+", name))))
+    found = {int(match[1]): each for each in folder.iterdir() if (match := pattern.fullmatch(each.name))}
+    if not found:
+        raise SystemExit(f"{path}: there is no such file")
+    return str(found[max((at for at in found if at <= frame), default=min(found))])
 
 
 def read_picture(path: str, layer: str, channels: int, width: int, height: int) -> Array:
