@@ -11,7 +11,8 @@ from halation.graph import Graph, Key, Keys, Output, Port, evaluate_at_frame
 from halation.nodes import Kind, RotoShape, catalogue, join_points, make_ellipse, name_roto_shapes, split_points
 from halation.nodes.input.shape import Shape
 from halation.resources.sandbox import UNRESTRICTED
-from polygons import Corners, measure_coverage, measure_distance
+from polygons import Corners, measure_coverage
+from soft_edges import measure_soft_coverage
 
 WIDTH, HEIGHT = 80, 60
 SIZE = (WIDTH, HEIGHT)
@@ -64,10 +65,11 @@ def test_a_spline_of_an_ellipse_is_the_ellipse(run):
 
 
 @pytest.mark.parametrize("name", ["the drop", "corners"])
-def test_softness_is_a_smooth_step_of_the_distance(run, name):
+def test_softness_is_the_mean_of_a_smooth_step_of_the_distance(run, name):
     node = CASES[name].with_values(softness=0.2)
-    t = np.clip(0.5 + measure_distance(trace(node), SIZE) / (0.2 * HEIGHT), 0.0, 1.0)
-    np.testing.assert_allclose(mask_of(run, node), 3.0 * t**2 - 2.0 * t**3, atol=5e-3)
+    corners = trace(node, 60)
+    expected = measure_soft_coverage(corners, np.full(len(corners), 0.2 * HEIGHT), SIZE)
+    np.testing.assert_allclose(mask_of(run, node), expected, atol=2e-3)
 
 
 def test_softness_can_differ_from_point_to_point(run):

@@ -101,6 +101,11 @@ def flatten(outline: PlacedCurves) -> StraightSegments:
     return _divide(outline, np.clip(np.minimum(np.sqrt(0.75 * bends / _FINE), short), 1, _MOST), 1.0 / 12.0)
 
 
+def measure_slack(feathers: Array) -> Array:
+    """How far chords may be from their curve where edges are as wide as feathers."""
+    return np.maximum(_LOOSE * feathers, _LEAST_SLACK)
+
+
 def list_chords(outline: PlacedCurves, feather: float) -> StraightSegments:
     """Chords that stand for the distance to an outline, where an edge is as wide as a feather.
 
@@ -108,7 +113,7 @@ def list_chords(outline: PlacedCurves, feather: float) -> StraightSegments:
     of them are joined again: as many as lie beside one chord, by the places of twice as many points.
     """
     narrowest = feather + np.minimum(outline.feathers, outline.feathers[outline.following])
-    slack = np.maximum(_LOOSE * narrowest, _LEAST_SLACK)
+    slack = measure_slack(narrowest)
     bends = outline.bends
     wanted = np.ceil(np.minimum(np.sqrt(0.75 * bends / slack), _MOST))
     counts = np.where(wanted > 1.0, 4.0 * np.ceil(0.5 * wanted), 1.0).astype(np.intp)

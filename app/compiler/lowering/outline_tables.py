@@ -2,7 +2,8 @@
 
 A tile is a texel of `tiles`: the number of its first entry and how many it has, one for each outline that matters
 there, then what the mask below is multiplied by and what is added, if it has none. An entry has ten texels: the number
-of its outline, the first texel of the chords near the tile and how many there are; the tile; then for each of four
+of its outline, the first texel of the chords near the tile and how many there are, how narrow its edge is where it has
+to be looked at in parts of a pixel; the tile; then for each of four
 strips of four rows the first segment and how many, and what lies left of the strip in each row.
 """
 
@@ -17,6 +18,7 @@ from ...errors import DeviceError
 from .outline_cells import STRIP, TILE, SegmentCells, TileGrid, sort_into_cells
 from .outline_chords import NearChords, find_candidates
 from .outline_curves import Array, PlacedCurves, StraightSegments, flatten, list_chords
+from .outline_evenness import find_uneven
 from .outline_union import keep_edges
 
 ENTRY = 10
@@ -41,6 +43,8 @@ class _SortedOutline(NamedTuple):
     chords: Array
     """Two rows for each: both ends, then the feathers there and nothing."""
     near: NearChords
+    uneven: Array
+    """By tile: 0, or the least width of its edge where the distance does not change evenly there."""
     matters: Array
     level: Array
     """By tile: its coverage where it does not matter."""
@@ -65,7 +69,7 @@ def build_tables(fills: Sequence[OutlineFill], size: tuple[int, int], beyond: in
     tiles = np.zeros((down, across, 4))
     tiles[..., 2], tiles[..., 3] = scale, offset
     entries = _list_entries(prepared, is_listed, tiles)
-    shapes = [_describe_shape(fill) for fill in fills]
+    shapes = [_describe_shape(item) for item in prepared]
     tables = {
         "shapes": np.array(shapes),
         "tiles": tiles,
@@ -84,10 +88,14 @@ def _share_feather(fill: OutlineFill) -> OutlineFill:
     return replace(fill, feather=fill.feather + fill.feathers[0], feathers=())
 
 
-def _describe_shape(fill: OutlineFill) -> tuple[float, ...]:
-    """Two texels: the mode, the opacity, whether it is inverted, the feather; the growth, whether points have more."""
+def _describe_shape(item: _SortedOutline) -> tuple[float, ...]:
+    """Two texels: the mode, the opacity, whether it is inverted, the feather; then the growth, whether points have more
+    feather, and 1 or -1 for the side of chords that is inside.
+    """
+    fill, ends = item.fill, item.chords[::2]
     mode = _MODES.index(fill.mode)
-    return mode, fill.opacity, fill.invert, fill.feather, fill.growth, any(fill.feathers), 0.0, 0.0
+    turn = 1.0 if (ends[:, 0] * ends[:, 3] - ends[:, 2] * ends[:, 1]).sum() >= 0.0 else -1.0
+    return mode, fill.opacity, fill.invert, fill.feather, fill.growth, any(fill.feathers), turn, 0.0
 
 
 def _prepare(fill: OutlineFill, grid: TileGrid) -> _SortedOutline:
@@ -105,11 +113,11 @@ def _prepare(fill: OutlineFill, grid: TileGrid) -> _SortedOutline:
     if is_hard:
         nothing = np.zeros(cells.are_crossed.shape, np.intp)
         near = NearChords(np.zeros(0, np.intp), nothing, nothing)
-        return _SortedOutline(fill, cells, np.zeros((0, 4)), near, cells.are_crossed, level)
+        return _SortedOutline(fill, cells, np.zeros((0, 4)), near, np.zeros(nothing.shape), cells.are_crossed, level)
     widths = np.maximum(fill.feather + chords.feathers, 1.0) if curves.feathers.any() else None
     near = find_candidates(chords.ends, 0.5 * feather + fill.growth + 1.0, grid, widths)
     pairs = np.stack([chords.ends, np.pad(chords.feathers, ((0, 0), (0, 2)))], axis=1).reshape(-1, 4)
-    return _SortedOutline(fill, cells, pairs, near, near.counts > 0, level)
+    return _SortedOutline(fill, cells, pairs, near, find_uneven(chords, near, fill.feather), near.counts > 0, level)
 
 
 def _combine_levels(prepared: Sequence[_SortedOutline], grid: TileGrid) -> tuple[Array, Array, list[Array]]:
@@ -177,6 +185,7 @@ def _list_entries(prepared: Sequence[_SortedOutline], is_listed: Sequence[Array]
         at = first[row, column] + place[row, column]
         entries[at, 0, 0] = number
         entries[at, 0, 1], entries[at, 0, 2] = texels[row, column], lengths[row, column]
+        entries[at, 0, 3] = item.uneven[row, column]
         entries[at, 1, 0], entries[at, 1, 1] = column, row
         for strip in range(_STRIPS):
             cell = _STRIPS * row + strip, column
