@@ -320,7 +320,7 @@ vec4 path_refine(
 
 // What an outline does to four pixels beside each other, packed: four texels by sixteen for each entry of a tile, 2^across
 // of which lie side by side.
-vec4 path_covers(int bits, int across, int count, int beyond) {
+vec4 path_find_covers(int bits, int across, int count, int beyond, bool is_fine) {
     ivec2 block = pixel >> ivec2(2, 4), within = ivec2(4, 1) * (pixel & ivec2(3, 15));
     int number = (block.y << across) + block.x;
     if (number >= count) return vec4(0.0);
@@ -344,12 +344,22 @@ vec4 path_covers(int bits, int across, int count, int beyond) {
     vec4 inside = mix(-distances, distances, greaterThanEqual(cover, vec4(0.5))) + more.x;
     if (more.x > 0.0) return path_pack(max(cover, clamp(inside + 0.5, 0.0, 1.0)), mode, facts.y, invert);
     vec4 soft = path_soften(cover, inside, feathers);
-    if (entry.w > 0.0) {
+    if (is_fine && entry.w > 0.0) {
         soft = path_refine(
             int(entry.y), int(entry.z), place, bits, facts.w, cover, soft, inside, feathers, more.z, entry.w
         );
     }
     return path_pack(soft, mode, facts.y, invert);
+}
+
+vec4 path_covers(int bits, int across, int count, int beyond) {
+    return path_find_covers(bits, across, count, beyond, false);
+}
+
+// The same, where the distance changes unevenly in some tiles. Apart from the above since rasterizers on processors run
+// through all that a program might do.
+vec4 path_covers_fine(int bits, int across, int count, int beyond) {
+    return path_find_covers(bits, across, count, beyond, true);
 }
 
 // The mask with all outlines in a pixel.

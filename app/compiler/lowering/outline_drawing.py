@@ -30,8 +30,10 @@ class OutlineDraw:
         entries, shapes = pictures["entries"], pictures["shapes"]
         count = len(tables["entries"]) // ENTRY
         across = math.ceil(math.log2(max(2.0 * math.sqrt(count), 1.0)))
+        is_uneven = any(tables["entries"][::ENTRY, 3])
         covers = self(
-            "path_covers", entries=entries, shapes=shapes, segments=pictures["segments"], chords=pictures["chords"],
+            "path_covers_fine" if is_uneven else "path_covers", entries=entries, shapes=shapes,
+            segments=pictures["segments"], chords=pictures["chords"],
             nearest=pictures["nearest"], size=(_TILE // 4 << across, _TILE * max(1, -(-count >> across))),
             result=Vector(width=4), bits=bits, across=across, count=count, beyond=beyond,
         )  # fmt: skip

@@ -29,6 +29,8 @@ def find_uneven(chords: StraightSegments, near: NearChords, feather: float) -> A
     Half a step of slope, times the mean distance from the middle of a pixel, is what a mean is off by.
     """
     uneven = np.zeros(near.counts.shape)
+    if not len(chords.ends) or feather + chords.feathers.min() >= _WIDE:
+        return uneven
     row, column = np.nonzero(near.counts)
     order = np.argsort(near.starts[row, column])
     row, column = row[order], column[order]
