@@ -12,8 +12,10 @@ from collections.abc import Iterator
 import pytest
 from halation import document
 from halation.compiler import NULL, Plan, Request, Target, compile_graph
+from halation.graph import Graph, Output, Port
 from halation.inputs.provider import MediaProvider
-from halation.nodes import catalogue
+from halation.nodes import Kind, RotoShape, catalogue, name_roto_shapes
+from halation.nodes.input.roto import Roto
 from halation.presets import paths
 from halation.reference.specimen import drawable_outputs, plan_node
 from halation.resources.sandbox import UNRESTRICTED
@@ -29,11 +31,19 @@ TOGETHER = 100
 """Programs that are checked by one process."""
 
 
+def make_narrow_mask() -> Graph:
+    """A mask whose edge is about as wide as a pixel, which takes a program of its own."""
+    shapes = name_roto_shapes(a=RotoShape(feather=0.001))
+    graph = Graph().add("roto", Roto(shapes=shapes)).add_output("mask", Output(Kind.FIELD))
+    return graph.connect(Port("roto", "mask"), Port("outputs", "mask"))
+
+
 def plans(target: Target) -> Iterator[Plan]:
     for node in catalogue().values():
         if drawable_outputs(node):
             yield plan_node(node, (1920, 1080), target)
     pictures = MediaProvider(sandbox=UNRESTRICTED)
+    yield compile_graph(make_narrow_mask(), Request(), pictures, target=target)
     for path in paths():
         yield compile_graph(document.load(path, sandbox=UNRESTRICTED), Request(), pictures, target=target)
 
