@@ -242,7 +242,7 @@ float path_divide(
     vec4 feathers, few = vec4(0.0), many = vec4(0.0), steps = vec4(-1.5, -0.5, 0.5, 1.5);
     vec2 slope = vec2(0.0);
     int list[PATH_MOST] = near, listed = found;
-    vec4 limits, aways = vec4(0.0);  // aways: so near is what says on which side a place is
+    vec4 limits = vec4(0.0), besides = limits;  // besides: so near is what says on which side a place is
     for (int row = -1; row < 72; ++row) {
         int band = (row - 4) / 17, at = (row - 4) % 17 - 1;  // of a band of four squares first the middles
         bool is_small = row >= 4;
@@ -258,7 +258,7 @@ float path_divide(
             } else if ((at & 3) == 0) {
                 listed = path_select(
                     first, count, bits, feather, near, found, middle + corner, limits[at >> 2],
-                    aways[at >> 2], list
+                    besides[at >> 2], list
                 );
             }
             x = at < 0 ? 0.25 * steps : corner.x + PATH_PART * steps;
@@ -268,7 +268,7 @@ float path_divide(
             first, count, bits, feather, list, listed, middle.x + x, middle.y + y, side, turn, feathers
         );
         if (is_small && at < 0) {
-            if (is_crossed) aways = abs(inside) + 0.5 * PATH_CORNER;
+            if (is_crossed) besides = abs(inside) + 0.5 * PATH_CORNER;
             limits = (abs(inside) + 0.25 * PATH_CORNER) / max(feathers, 1.0);
             continue;
         }
