@@ -23,6 +23,7 @@ class VariableBlur(Filter):
     """
 
     aliases = (
+        "varied blur",
         "vari blur",
         "compound blur",
         "blur by mask",

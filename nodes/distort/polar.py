@@ -12,6 +12,7 @@ class Polar(Filter):
     """
 
     aliases = (
+        "coordinate space",
         "polar coordinates", "coord space", "rectangular to polar", "tiny planet", "spherical transform", "unwrap",
     )  # fmt: skip
 

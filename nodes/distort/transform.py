@@ -17,6 +17,7 @@ class Transform(Filter):
     """
 
     aliases = (
+        "track position", "trackpos", "tracker",
         "move", "translate", "rotate", "scale", "position", "mirror", "flip", "flop", "flip horizontal",
         "flip vertical", "dve", "offset", "shift", "pan", "tile", "motion tile", "camera shake", "transform image",
         "geometry", "turn", "zoom", "reposition", "pivot", "skew", "corner pin", "stabilize 2d", "transform masked",

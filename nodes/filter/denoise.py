@@ -12,6 +12,7 @@ class Denoise(Filter):
     """
 
     aliases = (
+        "degrain",
         "oidn", "noise reduction", "remove noise", "ai denoise", "open image denoise", "clean up", "intel denoise",
         "denoise sharpen", "remove grain",
     )  # fmt: skip

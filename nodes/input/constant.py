@@ -7,6 +7,7 @@ class Constant(Pointwise):
     """One color everywhere."""
 
     aliases = (
+        "eyedropper fill",
         "rgb", "color", "solid", "fill", "background", "solid color", "flat color", "color constant", "value", "plain",
         "colour",
     )  # fmt: skip

@@ -42,6 +42,7 @@ class Shape(Pointwise):
     """
 
     aliases = (
+        "beam",
         "rectangle", "ellipse", "circle", "square", "polygon", "star", "line", "box mask", "ellipse mask",
         "shape layer", "vignette mask", "mask", "garbage matte", "rounded rectangle", "triangle", "solid",
         "radial mask", "polygon mask", "power window", "window", "bezier", "spline", "path", "curve", "pen", "b-spline",

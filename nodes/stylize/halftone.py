@@ -12,6 +12,7 @@ class Halftone(Pointwise):
     """
 
     aliases = (
+        "cc halftone",
         "dot screen", "newspaper", "print", "comic dots", "ben day", "color halftone", "raster", "screen print",
         "half tone",
     )  # fmt: skip

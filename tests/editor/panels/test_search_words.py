@@ -48,6 +48,8 @@ COMMON_NAMES = {
     "gradient wipe": "mix_images", "linear wipe": "mix_images", "block dissolve": "mix_images",
     "change to color": "hue_curves", "refine hard matte": "feather", "key cleaner": "keyer",
     "time machine": "time_offset", "latlong patcher": "panorama", "planar transform": "corner_pin",
+    "track position": "transform", "tracker": "transform", "degrain": "denoise", "varied blur": "variable_blur",
+    "coordinate space": "polar", "beam": "shape", "eyedropper fill": "constant", "cc halftone": "halftone",
     "warp stabilizer": "transform", "transform masked": "transform", "charcoal": "crosshatch",
 }  # fmt: skip
 """What somebody types who wants a node, in the words of the trade."""
