@@ -352,11 +352,12 @@ vec4 path_find_covers(int bits, int across, int count, int beyond, bool is_fine)
     return path_pack(soft, mode, facts.y, invert);
 }
 
+// This for outlines whose distance changes evenly.
 vec4 path_covers(int bits, int across, int count, int beyond) {
     return path_find_covers(bits, across, count, beyond, false);
 }
 
-// The same, where the distance changes unevenly in some tiles. Apart from the above since rasterizers on processors run
+// The same where the distance changes unevenly in some tiles. Apart from the above since rasterizers on processors run
 // through all that a program might do.
 vec4 path_covers_fine(int bits, int across, int count, int beyond) {
     return path_find_covers(bits, across, count, beyond, true);
