@@ -93,14 +93,23 @@ def test_code_that_takes_too_long_to_compile(tried: Renderer, submitted: list[st
     assert (tried.render(effect(2.0), REQUEST)["out"] == 1.0).all()
 
 
+def measure_work(process: int) -> float:
+    """The processor time of another process, in seconds."""
+    fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="it lists the processes of another one")
 def test_code_that_ends_the_process() -> None:
     """Long before it would take too long."""
     tried, others = Renderer(trial_process=TrialProcess(timeout=0.0), sandbox=UNRESTRICTED), list_children()
     tried.render(effect(0.25), REQUEST)
     (number,) = list_children() - others
+    before = measure_work(number)
     with tried.runner.start_run(tried.compile(graph(SLOW), REQUEST), tried.runner.create_lease()) as run:
         assert not run.is_ready
+        while measure_work(number) < before + 0.1:
+            time.sleep(0.01)  # one that ended before it began to compile would only be started again
         os.kill(number, signal.SIGSEGV)
         with pytest.raises(DeviceError, match=r"node 'user': its code has ended the process \(SIGSEGV\)"):
             next(run)
