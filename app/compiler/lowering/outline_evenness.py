@@ -4,6 +4,8 @@ Elsewhere the mean over a pixel is that across an even edge. Steps of the distan
 bends, from feathers that grow fast, and from places between two parts of an outline.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from .outline_chords import NearChords
@@ -69,7 +71,7 @@ def _are_uneven(chords: StraightSegments, widths: Array) -> Array:
 
     Where chords are as flat as a smooth curve makes them, their angle is spread over their length.
     """
-    way, growth = chords.ends[:, 2:] - chords.ends[:, :2], np.abs(widths[:, 1] - widths[:, 0])
+    way = chords.ends[:, 2:] - chords.ends[:, :2]
     length = np.maximum(np.hypot(*way.T), 1e-12)
     after = np.roll(np.arange(len(length)), -1)
     turn = np.hypot(*(way[after] / length[after, None] - way / length[:, None]).T)
@@ -77,11 +79,11 @@ def _are_uneven(chords: StraightSegments, widths: Array) -> Array:
     narrow, wide = np.minimum(widths.min(axis=1), widths[after].min(axis=1)), widths.max(axis=1)
     slope = _STEEP / np.maximum(narrow, 1.0)
     bend = turn / both
-    grows, growth = growth / length, (widths[:, 1] - widths[:, 0]) / length
+    growth = (widths[:, 1] - widths[:, 0]) / length
     is_sharp = (bend * (0.5 * wide + 1.0) > 0.5) | (bend * slope / 12.0 > _TOLERANCE)
     is_corner = (both * turn / 8.0 > 1.5 * measure_slack(narrow)) & (turn * slope / 8.0 > _TOLERANCE)
     is_corner |= 0.5 * np.abs(growth[after] - growth) * slope / 8.0 > _TOLERANCE
-    grows_fast = grows * grows * _STEEP / (24.0 * np.maximum(narrow, 1.0) ** 2) > _TOLERANCE
+    grows_fast = growth * growth * _STEEP / (24.0 * np.maximum(narrow, 1.0) ** 2) > _TOLERANCE
     is_uneven = is_sharp | is_corner | grows_fast
     is_uneven |= (chords.ends[:, 2:] != chords.ends[after, :2]).any(axis=1) & (np.arange(len(after)) < len(after) - 1)
     return is_uneven | np.roll(is_uneven, 1)

@@ -78,10 +78,8 @@ def feedback(
         shown = np.maximum(image, past)
     elif mode == "add":
         shown = join(color + light, np.minimum(alpha + cover, 1.0))
-    elif mode == "screen":  # it is not defined above 1: there the brighter one wins
-        color = np.maximum(color, 0.0)
-        most = np.maximum(color, light)
-        shown = join(np.where(most > 1.0, most, screen(color, light)), alpha + cover * (1.0 - alpha))
+    elif mode == "screen":
+        shown = join(screen(np.maximum(color, 0.0), light), alpha + cover * (1.0 - alpha))
     elif mode == "over":
         shown = image + (1.0 - alpha) * past
     else:

@@ -34,7 +34,7 @@ def echo(image: Clip, frame: int, echoes: int, spacing: int, decay: float, mode:
         elif mode == "add":
             shown = join(shown[..., :3] + fainter[..., :3], np.minimum(shown[..., 3:] + fainter[..., 3:], 1.0))
         elif mode == "screen":
-            shown = echo_screen(shown, fainter)
+            shown = screen(shown, fainter)
         elif mode == "behind":
             shown = shown + (1.0 - shown[..., 3:]) * fainter
         elif mode == "in front":
@@ -42,11 +42,6 @@ def echo(image: Clip, frame: int, echoes: int, spacing: int, decay: float, mode:
         elif mode == "average":
             shown = shown + fainter
     return shown / total if mode == "average" else shown
-
-
-def echo_screen(a: Array, b: Array) -> Array:
-    """1 - (1 - a)(1 - b). It is not defined above 1: there the brighter one wins."""
-    return np.where(np.maximum(a, b) > 1.0, np.maximum(a, b), screen(a, b))
 
 
 def frame_average(image: Clip, frame: int, frames: int, weights: str, window: str) -> Array:
