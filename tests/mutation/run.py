@@ -5,8 +5,8 @@
     .venv/bin/python tests/mutation/run.py --at app/media/goldens.py:105        # all faults of one line
     .venv/bin/python tests/mutation/run.py --repairs                            # holes that were mended, opened again
 
-The same seed draws the same faults of the same tree. Each is shown only to the tests that `--changed` would run for its
-file, the nearest first, so a fault that is noticed far away counts as a survivor. Ends with 1 if a room's share of
+The same seed draws the same faults of the same tree. Each is shown only to the tests near its file that `choice.py`
+chooses, the nearest first, so a fault that is noticed far away counts as a survivor. Ends with 1 if a room's share of
 noticed faults is below its floor in `floors.json`; a better share of at least fifty faults raises it with
 `HALATION_RENEW=1`.
 """
@@ -27,10 +27,9 @@ from pathlib import Path
 
 sys.path.append(str(Path(__file__).parents[1]))
 
-from changes import TESTS, covers
+from mutation.choice import select_tests
 from mutation.mutants import Mutant, list_mutants
 from mutation.repairs import REPAIRS, Repair
-from selection import LIST
 from source_trees import ROOT, copy_tree, run_in_tree
 
 FLOORS = Path(__file__).with_name("floors.json")
@@ -42,14 +41,10 @@ LIMIT = 600.0
 ENOUGH = 50
 """Faults of a room from which on a better share raises its floor: of fewer, luck decides."""
 
-FILES = 12
-"""The most test files that see a fault, the nearest ones: what is basic is imported by all."""
+PATIENCE = 120
+"""Seconds after which a test that sees a fault has failed: few need more, and those fail without the fault too."""
 
-SLOW_ROOMS = ("gui", "hostile", "law", "mutation")
-"""Rooms of tests that no fault is shown to: each takes minutes, or reads the tree itself."""
-
-
-_PYTEST = ("-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "--tb=no")
+_PYTEST = ("-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "--tb=no", f"--timeout={PATIENCE}")
 
 
 @dataclass(frozen=True)
@@ -93,19 +88,6 @@ def list_line_mutants(place: str) -> list[Mutant]:
     return [mutant for mutant in mutants if source.count("\n", 0, mutant.start) + 1 == int(number)]
 
 
-def list_tests(path: Path) -> list[str]:
-    """The test files that cover a file, the nearest first: of its own name, of its room, then all others."""
-    tests = [test for test in sorted(TESTS.rglob("test_*.py")) if covers(test, {ROOT / path})]
-    tests = [test for test in tests if test.relative_to(TESTS).parts[0] not in SLOW_ROOMS]
-
-    def measure_distance(test: Path) -> tuple[bool, bool, bool, bool]:
-        name, folder = test.stem.removeprefix("test_"), test.parent.name
-        is_twin = name.rstrip("s") == path.stem.rstrip("s")
-        return not is_twin, path.stem not in test.read_text("utf-8"), folder not in path.parts, folder == "nodes"
-
-    return [str(test.relative_to(ROOT)) for test in sorted(tests, key=measure_distance)][:FILES]
-
-
 def try_mutant(tree: Path, mutant: Mutant, broken: set[str]) -> Trial:
     """Show a fault to its tests, and take it out of the tree again.
 
@@ -122,23 +104,19 @@ def try_mutant(tree: Path, mutant: Mutant, broken: set[str]) -> Trial:
 
 
 def _try_once(tree: Path, mutant: Mutant, broken: set[str]) -> Trial:
-    room, tests = room_of(mutant.path), list_tests(mutant.path)
-    if not tests:
-        return Trial(mutant, room, False, "no test covers the file")
-    path = tree / mutant.path
+    room, path = room_of(mutant.path), tree / mutant.path
     source = path.read_text("utf-8")
+    selections = select_tests(mutant.path, source.count("\n", 0, mutant.start) + 1)
     path.write_text(mutant.apply(source), "utf-8")
-    slow = [name for name in LIST.read_text("utf-8").split() if name.partition("::")[0] in tests]
-    quick = [*tests, *(f"--deselect={name}" for name in slow)]
     words = [*_PYTEST, *(f"--deselect={name}" for name in sorted(broken))]
     try:
-        # Quick tests first: most faults are noticed by one of them.
-        for selection in (quick, slow) if slow else (quick,):
+        for selection in selections:
             ended = run_in_tree(tree, *words, *selection, timeout=LIMIT)
             if ended.returncode not in (0, 5):  # 5: all tests of the files are slow
                 lines = [line for line in ended.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
                 return Trial(mutant, room, True, " ".join(lines[:1]) or f"exit code {ended.returncode}")
-        return Trial(mutant, room, False, f"{len(tests)} files of tests pass")
+        count = len({word.partition("::")[0] for words in selections for word in words if word.endswith(".py")})
+        return Trial(mutant, room, False, f"{count} files of tests pass" if selections else "no test is near the file")
     except subprocess.TimeoutExpired:
         return Trial(mutant, room, True, "no end")
     finally:

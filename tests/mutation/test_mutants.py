@@ -10,9 +10,10 @@ from pathlib import Path
 import pytest
 from import_graph import ROOT
 from mutation import run
+from mutation.choice import FUNCTIONS, list_scripted_nodes, list_tests, select_tests
 from mutation.mutants import Mutant, list_mutants
 from mutation.repairs import REPAIRS
-from mutation.run import draw_mutants, list_files, list_tests, raise_floors, rate, room_of, try_mutant
+from mutation.run import draw_mutants, list_files, raise_floors, rate, room_of, try_mutant
 
 PYTHON = '''"""Text with 1 + 1."""
 __all__ = ["size"]
@@ -86,6 +87,28 @@ def test_the_same_seed_draws_the_same_faults() -> None:
 def test_the_nearest_tests_come_first() -> None:
     assert list_tests(Path("app/graph/walk.py"))[0] == "tests/graph/test_walk.py"
     assert list_tests(Path("shaders/geometry/curvature.glsl"))[0] == "tests/nodes/test_curvature.py"
+
+
+@pytest.mark.parametrize(
+    ("path", "test"),
+    [
+        ("app/serving/listening.py", "tests/cli/test_serve.py"),
+        ("app/cli/sweeping.py", "tests/cli/test_sweep.py"),
+        ("app/cluster/campaign.py", "tests/cluster/test_frames.py"),
+        ("app/editor/inspector/item_rows.py", "tests/gui/test_inspector.py"),
+        ("shaders/primitive/fourier.glsl", "tests/renderer/test_convolution.py"),
+        ("shaders/viewer/palette.glsl", "tests/renderer/test_display.py"),
+    ],
+)
+def test_a_file_that_no_test_imports_has_tests_too(path: str, test: str) -> None:
+    assert test in [word for words in select_tests(Path(path), 1) for word in words]
+
+
+def test_a_function_of_scripts_is_tried_by_the_nodes_that_need_it() -> None:
+    path = FUNCTIONS / "slants.py"
+    lines = (ROOT / path).read_text("utf-8").splitlines()
+    assert list_scripted_nodes(path, 1) == []
+    assert list_scripted_nodes(path, lines.index("SEARCH_LENGTHS = " + lines[11].partition(" = ")[2]) + 1) == ["smaa"]
 
 
 @pytest.mark.parametrize(("code", "was_noticed"), [(1, True), (0, False)])

@@ -1,0 +1,183 @@
+"""Which tests a fault is shown to: those that reach its file, the nearest first.
+
+A test file reaches what `--changed` finds by its imports (`changes.py`), what these modules import in turn, and the
+command that it runs by its name. Of the tests that drive the real editor, which takes minutes, it sees those named
+after the folder or the file. A function of exported scripts is text that no module imports: it is tried by the cases
+of all nodes whose scripts need it.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections import defaultdict
+from collections.abc import Collection
+from functools import cache
+from pathlib import Path
+
+from changes import TESTS, covers, list_helpers
+from import_graph import MODULES, ROOT, links, name_of, targets
+from selection import LIST
+
+FILES = 12
+"""The most test files that see a fault, the nearest ones: what is basic is imported by all."""
+
+SLOW_FILES = 6
+"""The test files whose slow tests see a fault too: those of twelve files take two minutes."""
+
+DRIVING_FILES = 3
+"""The most test files that drive the real editor: each takes half a minute."""
+
+SKIPPED_ROOMS = ("bench", "gui", "hostile", "law", "mutation")
+"""Rooms of tests that no fault is shown to, the editor's excepted: each takes minutes, or reads the tree itself."""
+
+DRAWING_ROOMS = ("color", "custom_nodes", "nodes", "renderer")
+"""Rooms of tests that look at what shaders draw."""
+
+FUNCTIONS = Path("app/export/python/functions")
+"""The text of exported scripts."""
+
+SCRIPT_TESTS = tuple(f"tests/cli/test_export_{name}.py" for name in ("numbers", "python", "python_time",
+                     "python_cameras", "python_lamps"))  # fmt: skip
+"""The tests with a case for each node that a script can have."""
+
+_COMMAND = re.compile(r'\bcli\(\s*"([\w-]+)"')
+
+
+def select_tests(path: Path, line: int) -> list[list[str]]:
+    """The arguments of each run of pytest that a fault in this line is shown to, the quickest tests first."""
+    if path.parent == FUNCTIONS:
+        names = list_scripted_nodes(path, line)
+        return [[*SCRIPT_TESTS, "-k", " or ".join(sorted({*names, path.stem}))]] if names else [[*SCRIPT_TESTS]]
+    tests = list_tests(path)
+    listed = [name for name in LIST.read_text("utf-8").split() if name.partition("::")[0] in tests]
+    slow = [name for name in listed if name.partition("::")[0] in tests[:SLOW_FILES]]
+    driving = list_driving_tests(path)
+    quick = [*tests, *(f"--deselect={name}" for name in listed)] if tests else []
+    return [words for words in (quick, slow, driving) if words]
+
+
+def list_tests(path: Path) -> list[str]:
+    """The test files that reach a file, the nearest first: of its own name, of its room, then all others.
+
+    Those that `--changed` runs come first, then those whose names are like that of the file or its folder; where both
+    are few, those from which imports lead to the file.
+    """
+    kin = list_kin(path)
+    distances = _measure_distances([name_of(ROOT / file) for file in kin if file.suffix == ".py"])
+
+    def measure_distance(test: Path) -> tuple[object, ...]:
+        name, folder = test.stem.removeprefix("test_"), test.parent.name
+        is_twin = name.rstrip("s") == path.stem.rstrip("s")
+        is_named = path.stem in test.read_text("utf-8")
+        return not is_twin, not is_named, folder not in path.parts, folder == "nodes", distances.get(test, 0)
+
+    tests = [test for test in _list_test_files() if _room_of(test) not in SKIPPED_ROOMS]
+    chosen = sorted((test for test in tests if covers(test, {ROOT / path})), key=measure_distance)
+    others = [test for test in tests if path.suffix == ".py" or _room_of(test) in DRAWING_ROOMS]
+    alike = {test: likeness for test in others if (likeness := _count_words(kin, test))}
+    chosen += sorted(alike, key=lambda test: (-alike[test], distances.get(test, 99), measure_distance(test)))
+    if path.suffix != ".py":  # a shader that many draw with: tests that speak of it
+        chosen += [test for test in others if path.stem in test.read_text("utf-8")]
+    far = sorted((test for test in tests if test in distances), key=lambda test: (distances[test], str(test)))
+    chosen += far if len(set(chosen)) < SLOW_FILES else []
+    return [str(test.relative_to(ROOT)) for test in dict.fromkeys(chosen)][:FILES]
+
+
+def list_kin(path: Path) -> set[Path]:
+    """A file itself, the shaders that include it, and the modules that name one of these."""
+    if path.suffix == ".py":
+        return {path}
+    names, new = set[str](), {str(path.relative_to("shaders").with_suffix(""))}
+    while new:
+        names |= new
+        new = {name for name, text in _read_shaders().items() if any(f'"{old}.glsl"' in text for old in names)} - names
+    texts = {file: file.read_text("utf-8") for file in MODULES.values()}
+    start = f'"{path.parent.name}/{{'  # the rest of the name is put together
+    modules = {file for file, text in texts.items() if any(name in text for name in names) or start in text}
+    return {*(Path("shaders", f"{name}.glsl") for name in names), *(file.relative_to(ROOT) for file in modules)}
+
+
+def list_driving_tests(path: Path) -> list[str]:
+    """The tests of the real editor that are named after a file of it or after its folder, the file's first."""
+    if path.parts[:2] != ("app", "editor"):
+        return []
+    words = {path.stem.rstrip("s"), *(part.rstrip("s") for part in path.parts[2:-1])}
+    found = [test for test in _list_test_files() if _room_of(test) == "gui"]
+    found = [test for test in found if any(word in test.stem for word in words)]
+    found.sort(key=lambda test: (path.stem.rstrip("s") not in test.stem, len(test.stem), test.stem))
+    return [str(test.relative_to(ROOT)) for test in found[:DRIVING_FILES]]
+
+
+def list_scripted_nodes(path: Path, line: int) -> list[str]:
+    """The nodes whose scripts need the function or constant in this line of a file of functions."""
+    from halation.export.python.library import load_library
+    from halation.nodes import catalogue
+
+    library, source = load_library(), (ROOT / path).read_text("utf-8")
+    here = {
+        name
+        for name, definition in library.definitions.items()
+        if (start := source.find(definition.text)) >= 0
+        and 0 <= line - 1 - source.count("\n", 0, start) <= definition.text.count("\n")
+    }
+    needed = {id: {each.name for each in library.collect([id])} for id in catalogue() if library.find_function(id)}
+    return [id for id, names in needed.items() if names & here]
+
+
+@cache
+def _list_test_files() -> tuple[Path, ...]:
+    return tuple(sorted(TESTS.rglob("test_*.py")))
+
+
+@cache
+def _read_shaders() -> dict[str, str]:
+    folder = ROOT / "shaders"
+    return {str(file.relative_to(folder).with_suffix("")): file.read_text("utf-8") for file in folder.rglob("*.glsl")}
+
+
+def _room_of(test: Path) -> str:
+    return test.relative_to(TESTS).parts[0]
+
+
+def _count_words(files: Collection[Path], test: Path) -> int:
+    """How many words the names of files and of a test share, as `serving` and `serve` do."""
+    parts = {part for file in files for part in file.with_suffix("").parts[1:]}
+    words = {word[:4] for part in parts for word in part.split("_") if len(word) > 2}
+    names = (_room_of(test).replace("cli", ""), test.stem.removeprefix("test_"))  # each command has its own file
+    return len(words & {word[:4] for name in names for word in name.split("_")})
+
+
+@cache
+def _list_entries(test: Path) -> frozenset[str]:
+    """The modules that a test file and its helpers import, and those of the commands that it runs."""
+    names = {name for path in list_helpers(test) if path.name != "conftest.py" for name in _read_entries(path)}
+    return frozenset(names & {*MODULES})
+
+
+@cache
+def _read_entries(path: Path) -> frozenset[str]:
+    text = path.read_text("utf-8")
+    commands = (f"halation.cli.{name.replace('-', '_')}" for name in _COMMAND.findall(text))
+    return frozenset({*targets(ast.parse(text), ""), *commands})
+
+
+@cache
+def _list_importers() -> dict[str, set[str]]:
+    importers = defaultdict[str, set[str]](set)
+    for name, target in links():
+        importers[target].add(name)
+    return importers
+
+
+def _measure_distances(modules: Collection[str]) -> dict[Path, int]:
+    """How many imports lie between the test files and the modules that they reach."""
+    distances, new = dict.fromkeys(modules, 0), {*modules}
+    while new:
+        new = {name for at in new for name in _list_importers().get(at, ())} - {*distances}
+        distances |= dict.fromkeys(new, max(distances.values(), default=0) + 1)
+    return {
+        test: min(distances[name] for name in entries)
+        for test in _list_test_files()
+        if (entries := _list_entries(test) & {*distances})
+    }
