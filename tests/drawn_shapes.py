@@ -42,8 +42,8 @@ class DrawnShapes:
     def add_rect(self, start: Any, end: Any, color: int, rounding: float = 0.0, width: float = 1.0) -> None:
         self._add("rect", (start, end), (rounding, width), color)
 
-    def add_rect_filled(self, start: Any, end: Any, color: int, rounding: float = 0.0) -> None:
-        self._add("filled rect", (start, end), (rounding,), color)
+    def add_rect_filled(self, start: Any, end: Any, color: int, rounding: float = 0.0, flags: int = 0) -> None:
+        self._add("filled rect", (start, end), (rounding,), color, str(flags))
 
     def add_circle(self, at: Any, radius: float, color: int, segments: int = 0, width: float = 1.0) -> None:
         self._add("circle", (at,), (radius, width), color)
@@ -63,8 +63,29 @@ class DrawnShapes:
         self._add("stroke", (), (width,), color)
 
     def add_text(self, *words: Any, wrap_width: float = 0.0) -> None:
-        at, color, text = words[-3:]
-        self._add("text", (at,), (wrap_width,), color, text)
+        if isinstance(words[1], int):
+            words = (None, self.em, *words)
+        _, size, at, color, text, *wrap = words
+        self._add("text", (at,), (size, *wrap, wrap_width)[:2], color, text)
+
+    def add_quad_filled(self, a: Any, b: Any, c: Any, d: Any, color: int) -> None:
+        self._add("quad", (a, b, c, d), (), color)
+
+    def add_triangle_filled(self, a: Any, b: Any, c: Any, color: int) -> None:
+        self._add("triangle", (a, b, c), (), color)
+
+    def add_bezier_cubic(self, a: Any, b: Any, c: Any, d: Any, color: int, width: float) -> None:
+        self._add("curve", (a, b, c, d), (width,), color)
+
+    def add_image_rounded(self, picture: Any, low: Any, high: Any, first: Any, last: Any, *words: Any) -> None:
+        color, rounding = words
+        self._add("picture", (low, high), (rounding,), color, f"{first} {last}")
+
+    def push_clip_rect(self, low: Any, high: Any, inside: bool) -> None:
+        self._add("clip", (low, high), (), 0, str(inside))
+
+    def pop_clip_rect(self) -> None:
+        self._add("unclip", (), (), 0)
 
     def measure(self, text: str, wrap_width: float = 0.0) -> Any:
         """The size of a text."""

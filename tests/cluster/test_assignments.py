@@ -98,3 +98,28 @@ def test_a_video_is_tried_three_times_as_a_whole() -> None:
         assert queue.put_suspects((4, 5), Assignment((4, 5), attempts, frozenset({"far"})), "near") == ()
         assert queue.take(1) == Assignment((4, 5), attempts + 1, frozenset({"far", "near"}))
     assert queue.put_suspects((4, 5), Assignment((4, 5), 2), "near") == (4, 5)
+
+
+@pytest.mark.parametrize(("is_first", "count"), [(True, 3), (False, 1)])
+def test_the_start_of_a_process_is_no_cost_of_frames(is_first: bool, count: int) -> None:
+    """Costs of 9, 1 and 2: 1.1 without the first one, where newer ones count a tenth, and else 7.5."""
+    queue = AssignmentQueue(range(100), is_chain=False)
+    queue.note_cost([9.0, 1.0, 2.0], is_first=is_first)
+    assert queue.take(1) == Assignment((*range(count),))
+
+
+def test_costs_are_those_of_later_frames_unless_it_is_the_first_chunk_of_a_worker() -> None:
+    queue = AssignmentQueue(range(100), is_chain=False)
+    queue.note_cost([1.9, 0.5])
+    assert queue.take(1) == Assignment((0, 1))
+
+
+def test_of_a_chain_whose_process_ended_three_frames_are_tried_one_by_one() -> None:
+    queue = AssignmentQueue(range(8), is_chain=True)
+    before = queue.take(2)
+    assert before is not None and queue.put_suspects(before.frames[1:], before, "near") == ()
+    for frame in (1, 2, 3):
+        assert queue.take(2) == Assignment((frame,), 1, frozenset({"near"}))
+        assert queue.take(2) is None  # those after it need it
+        queue.finish([frame])
+    assert queue.take(2) == Assignment((4, 5, 6, 7))

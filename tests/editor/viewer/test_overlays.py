@@ -210,7 +210,7 @@ def test_a_message_is_in_the_middle_and_its_box_around_it(monkeypatch) -> None:
     stage = run(monkeypatch, draw_message)
     dim, filled, edge, text = stage.lines.shapes
     assert dim.points == ((100.0, 60.0), (740.0, 540.0))
-    assert text.points == ((420.0 - 14 * 4, 300.0 - 8),) and text.lengths == (520.0,) and text.color == u32(COLOR)
+    assert text.points == ((420.0 - 14 * 4, 300.0 - 8),) and text.lengths == (EM, 520.0) and text.color == u32(COLOR)
     assert filled.points == edge.points == ((352.0, 280.0), (488.0, 320.0))
     assert stage.context.places["viewer message"] == (352.0, 280.0, 488.0, 320.0)
 
@@ -220,7 +220,7 @@ def test_a_narrow_panel_wraps_a_message_and_a_narrower_one_has_none(monkeypatch)
         stage = Stage(monkeypatch)
         stage.sight = Sight(ORIGIN, (width, 480), PICTURE, 1.0)
         overlays.draw_message(stage.context, stage.sight, "A sentence that is too long for this", COLOR)
-        assert [shape.lengths[0] for shape in stage.lines.list_kinds("text")] == ([] if wrapped is None else [wrapped])
+        assert [shape.lengths[1] for shape in stage.lines.list_kinds("text")] == ([] if wrapped is None else [wrapped])
 
 
 def test_a_badge_is_in_the_upper_right_corner_with_its_text_inside(monkeypatch) -> None:
