@@ -48,8 +48,11 @@ class DrawnShapes:
     def add_circle(self, at: Any, radius: float, color: int, segments: int = 0, width: float = 1.0) -> None:
         self._add("circle", (at,), (radius, width), color)
 
-    def add_circle_filled(self, at: Any, radius: float, color: int) -> None:
+    def add_circle_filled(self, at: Any, radius: float, color: int, segments: int = 0) -> None:
         self._add("disk", (at,), (radius,), color)
+
+    def add_ngon_filled(self, at: Any, radius: float, color: int, count: int) -> None:
+        self._add("ngon", (at,), (radius,), color, str(count))
 
     def add_ellipse(
         self, at: Any, radii: Any, color: int, turn: float = 0.0, segments: int = 0, width: float = 1.0
@@ -100,5 +103,6 @@ class DrawnShapes:
         return [shape for shape in self.shapes if shape.kind in kinds]
 
     def _add(self, kind: str, points: tuple[Any, ...], lengths: tuple[float, ...], color: int, text: str = "") -> None:
+        assert 0 <= color < 1 << 32, "a color has four bytes"
         pairs = tuple((float(at[0]), float(at[1])) for at in points)
         self.shapes.append(Shape(kind, pairs, tuple(map(float, lengths)), color, text))

@@ -243,6 +243,8 @@ def test_a_comment_is_as_large_as_it_can_be_read_where_it_has_room(make_brush, z
     assert size >= least - 1e-9
     rows = -(-0.5 * size * len(words) // width)
     assert size in (pytest.approx(least), pytest.approx(readable)) or rows * size <= room
+    if -(-0.5 * readable * len(words) // width) * readable <= room:
+        assert size == pytest.approx(max(least, readable))
     if size > least + 1.0 and size < readable - 1.0:
         assert -(-0.5 * (size + 1.0) * len(words) // width) * (size + 1.0) > room  # one more has no room
     assert text.points == (brush.to.to_screen(BOX.x + 12.0, BOX.y + 8.0),)
@@ -311,3 +313,39 @@ def test_only_what_is_seen_of_links_is_drawn(make_brush, scene) -> None:
         brush.visible = visible
         paint_decor.paint_wire(brush, wire, lit=False, faded=False)
         assert len(drawn(brush).shapes) == count
+
+
+@pytest.mark.parametrize("zoom", [0.2, 0.5, 0.6, 1.0])
+def test_a_frame_has_its_title_in_a_strip_at_its_top(make_brush, zoom: float) -> None:
+    """Far away the title is as large as can be read, and lies lower, so that it is not cut off."""
+    brush = make_brush(zoom)
+    box = replace(BOX, sort="frame", w=600.0, h=400.0)
+    paint_decor.paint_frame(brush, box, {"title": "Sky", "color": [0.5, 0.25, 0.125]}, False, False)
+    area, strip = drawn(brush).list_kinds("filled rect")
+    assert area.points == drawn(brush).list_kinds("rect")[0].points == brush.project_corners(box.rect)
+    assert strip.points == brush.project_corners((40.0, 80.0, 640.0, 112.0)) and strip.color & 0xFFFFFF == 0x204080
+    (text,) = drawn(brush).list_kinds("text")
+    size = text.lengths[0] / zoom
+    assert size == pytest.approx(min(max(15.0, 11.0 / zoom), 40.0)) and text.text == "Sky"
+    middle = 96.0 if zoom >= 0.6 else max(96.0, 80.0 + 0.8 * size)
+    assert text.points[0] == pytest.approx(brush.to.to_screen(52.0, middle - size / 2))
+
+
+def test_a_low_frame_has_a_strip_as_high_as_itself_and_a_name(make_brush) -> None:
+    brush = make_brush()
+    paint_decor.paint_frame(brush, replace(BOX, sort="frame", h=20.0), {"color": "red"}, True, False)
+    area, strip = drawn(brush).list_kinds("filled rect")
+    assert strip.points == area.points and drawn(brush).list_kinds("text")[0].text == "frame"
+    (edge,) = drawn(brush).list_kinds("rect")
+    assert edge.color == brush.ink.accent and edge.lengths[1] == 2.0
+
+
+@pytest.mark.parametrize("theme", ["dark", "light"])
+def test_nodes_stand_out_from_the_canvas_in_each_theme(theme: str) -> None:
+    """The outline is no lighter than the border in a light theme; shadows are faint, and pictures darker than nodes."""
+    ink = make_canvas_colors(theme)
+    assert len({ink.node, ink.canvas, ink.outline, ink.picture, ink.text, ink.error, ink.warning}) == 7
+    alphas = {color >> 24 for _, color in ink.shadow}
+    assert [grow for grow, _ in ink.shadow] == [1.0, 3.0, 6.0] and alphas == {26 if theme == "dark" else 14}
+    assert sum(ink.picture.to_bytes(4, "little")[:3]) < sum(ink.node.to_bytes(4, "little")[:3])
+    assert ink.faint >> 24 == 153 and ink.accent_soft >> 24 == 31
