@@ -14,6 +14,7 @@ from halation.compiler.knobs import Knob, Point
 from halation.export.package.curves import read_slot, write_slot
 from halation.export.package.parts import VariantSamples
 from halation.export.package.sampling import KnobSampler, Sample, Slot
+from halation.export.python.functions.coverage import surfaces_of_pixels
 from halation.presets import paths
 
 SIZE = "120x68"
@@ -62,3 +63,24 @@ def test_a_page_moves_the_reach_of_many_lights(cli, tmp_path: Path, reach: float
     subprocess.run(reader, check=True, timeout=100)
     picture = read(ours)
     assert np.abs(np.load(theirs) - picture).max() <= 2e-3 * np.abs(picture).max()
+
+
+def test_pixels_that_stand_for_a_mixed_one_are_at_most_two_away() -> None:
+    """Normals of mixed pixels are shorter than 1; in the middle of a wide band all that are near are mixed."""
+    normal, near = np.zeros((9, 12, 3)), np.full((9, 12, 1), 0.5)
+    normal[:, :6] = (0.0, 0.0, 1.0)
+    normal[:, 6:] = (0.8, 0.0, 0.6)
+    for middle, columns in ((5.5, 2), (5.5, 4), (5.5, 6)):
+        mixed = normal.copy()
+        wide = [at for at in range(12) if abs(at - middle) < columns / 2]
+        mixed[:, wide] = 0.5 * (np.array((0.0, 0.0, 1.0)) + np.array((0.8, 0.0, 0.6)))
+        for turned in (False, True):
+            share, front, back = surfaces_of_pixels(
+                mixed.swapaxes(0, 1) if turned else mixed, near.swapaxes(0, 1) if turned else near
+            )
+            y, x = np.mgrid[: share.shape[0], : share.shape[1]]
+            here = np.stack([x, y], axis=-1)
+            assert max(np.abs(front - here).max(), np.abs(back - here).max()) <= 2
+            if columns == 2:
+                inside = (slice(5, 7), slice(3, 6)) if turned else (slice(3, 6), slice(5, 7))
+                np.testing.assert_allclose(share[inside], 0.5, atol=1e-6)

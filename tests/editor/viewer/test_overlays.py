@@ -140,6 +140,22 @@ def test_what_is_drawn_grows_with_the_interface(monkeypatch, draw: Callable[[Sta
     assert draw in HAIRLINES or grown == large.lines.shapes
 
 
+def test_a_region_has_larger_grips_on_a_larger_interface(monkeypatch) -> None:
+    for scale in (1.0, 2.0):
+        stage = Stage(monkeypatch, scale)
+        draw_region(stage)
+        grip = stage.lines.list_kinds("filled rect")[0].points
+        arm = stage.lines.list_kinds("line")[0].points
+        assert (grip[1][0] - grip[0][0], arm[1][0] - arm[0][0]) == (7.0 * scale, 10.0 * scale)
+
+
+def test_the_edge_of_the_frame_is_that_of_the_picture(monkeypatch) -> None:
+    stage = Stage(monkeypatch)
+    overlays.draw_outline(stage.context, stage.sight)
+    assert {shape.points for shape in stage.lines.shapes} == {((LEFT, TOP), (LEFT + 512.0, TOP + 256.0))}
+    assert stage.context.places == {"viewer frame": (LEFT, TOP, LEFT + 512.0, TOP + 256.0)}
+
+
 def run(monkeypatch: pytest.MonkeyPatch, draw: Callable[[Stage], None]) -> Stage:
     stage = Stage(monkeypatch)
     draw(stage)
