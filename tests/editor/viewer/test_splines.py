@@ -293,7 +293,7 @@ def test_a_new_shape_has_the_next_number(context, monkeypatch, outline: SplineOu
     context.viewer.pen.pending = POINTS[0]
     spline_edits.lift_pen(context)
     command = context.commands[-1]
-    assert (command.port, command.name) == (Port("roto", "shapes"), "shape_8") and command.settings == {
+    assert (command.port, command.name) == (Port("roto", "shapes"), "shape_8") and command.fields == {
         "points": POINTS[0]
     }
     assert context.viewer.pen.selection == ("roto.shapes.shape_8.points", frozenset({0}))
