@@ -162,7 +162,7 @@ class WindowPainter:
 
     def _paint_box(self, picture: imgui.ImDrawData, box: Box) -> None:
         """Draw what lies in a box. Commands that are clipped to nothing cost nothing."""
-        tables = [_view_commands(lines) for lines in picture.cmd_lists]
+        tables = [view_commands(lines) for lines in picture.cmd_lists]
         originals = [table.copy() for table in tables]
         if not self._skip_covered(tables, box):
             left, top, right, bottom = box
@@ -205,6 +205,16 @@ def measure_window() -> tuple[int, int]:
     return round(size.x * scale.x), round(size.y * scale.y)
 
 
+def view_commands(lines: imgui.ImDrawList) -> Array:
+    """The commands of a list in place: what is changed here is drawn so."""
+    commands = lines.cmd_buffer
+    count = commands.size()
+    if not count:
+        return np.empty(0, COMMAND)
+    memory = (ctypes.c_uint8 * (count * COMMAND.itemsize)).from_address(commands.data_address())
+    return np.ctypeslib.as_array(memory).view(COMMAND)
+
+
 def _find_changes(before: Sequence[_DrawnList], after: Sequence[_DrawnList], written: frozenset[int]) -> list[Box]:
     """Where two frames differ, and where pictures have other pixels."""
     earlier, boxes = {drawn.name: drawn for drawn in before}, list[Box]()
@@ -243,16 +253,6 @@ def _copy_list(lines: imgui.ImDrawList) -> _DrawnList:
 def _copy_bytes(vector: Any, width: int) -> bytes:
     count = vector.size()
     return ctypes.string_at(vector.data_address(), count * width) if count else b""
-
-
-def _view_commands(lines: imgui.ImDrawList) -> Array:
-    """The commands of a list in place: what is changed here is drawn so."""
-    commands = lines.cmd_buffer
-    count = commands.size()
-    if not count:
-        return np.empty(0, COMMAND)
-    memory = (ctypes.c_uint8 * (count * COMMAND.itemsize)).from_address(commands.data_address())
-    return np.ctypeslib.as_array(memory).view(COMMAND)
 
 
 def _has_known_layout(lines: imgui.ImDrawList) -> bool:

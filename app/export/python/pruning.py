@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Mapping
+from functools import cache
 
 from msgspec import Struct, field
 from msgspec.structs import replace
@@ -55,16 +56,17 @@ def prune(library: FunctionLibrary, names: Iterable[str], asked: AskedChoices) -
     names = list(names)
     for _ in range(_ROUNDS):
         definitions = library.collect(names)
+        sources = {each.name: _read_source(each.text) for each in definitions}
         known = {each.name: Known() for each in definitions}
         for function in asked.list_functions():
             for each in library.collect([function]):
                 known[each.name].add(asked, function)
         defaults: dict[str, set[bool]] = {}
-        for each in definitions:
-            for name, state in _list_default_switches(each):
+        for source in sources.values():
+            for name, state in source.default_switches:
                 defaults.setdefault(name, set()).add(state)
-        passed = frozenset[str]().union(*(_find_passed_texts(each) for each in definitions))
-        tables = {each.name: keys for each in definitions if (keys := _find_keys(ast.parse(each.text)))}
+        passed = frozenset[str]().union(*(source.passed_texts for source in sources.values()))
+        tables = {name: source.keys for name, source in sources.items() if source.keys}
         pruned = {each.name: _Pruner(each, known[each.name], passed, defaults, tables).prune() for each in definitions}
         if all(pruned[each.name].text == each.text for each in definitions):
             break
@@ -72,10 +74,49 @@ def prune(library: FunctionLibrary, names: Iterable[str], asked: AskedChoices) -
     return library
 
 
-def _find_passed_texts(definition: Definition) -> frozenset[str]:
-    """Texts that a function hands to another one, and texts that stand for a missing argument."""
+class _Source(Struct, frozen=True):
+    """What the text of a definition says, whatever is asked of it."""
+
+    uses: frozenset[str]
+    """The names that it takes from outside."""
+    passed_texts: frozenset[str]
+    """Texts that it hands to other functions, and texts that stand for a missing argument."""
+    default_switches: tuple[tuple[str, bool], ...]
+    """The switches that it may be called without, and what they are then."""
+    keys: frozenset[str]
+    """Its keys, if it is a table."""
+    own_tables: Mapping[str, frozenset[str]]
+    """The keys of tables inside it, by name."""
+    parts: tuple[ast.Dict | list[ast.stmt], ...]
+    """Its tables and blocks, those outside before those inside."""
+
+
+@cache
+def _read_source(text: str) -> _Source:
+    """Read a definition. Most are the same in all scripts, and each is asked for in all rounds."""
+    tree = ast.parse(text)
+    tables: dict[str, frozenset[str]] = {}
+    parts: list[ast.Dict | list[ast.stmt]] = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name) and isinstance(node.value, ast.Dict):
+            tables[node.targets[0].id] = _list_keys(node.value)
+        if isinstance(node, ast.Dict):
+            parts.append(node)
+        blocks = (getattr(node, "body", None), getattr(node, "orelse", None))
+        parts += [block for block in blocks if isinstance(block, list)]
+    return _Source(
+        uses=find_uses(tree.body[0]),
+        passed_texts=_find_passed_texts(tree),
+        default_switches=_list_default_switches(tree),
+        keys=_find_keys(tree),
+        own_tables=tables,
+        parts=tuple(parts),
+    )
+
+
+def _find_passed_texts(tree: ast.Module) -> frozenset[str]:
     parts: list[ast.expr] = []
-    for node in ast.walk(ast.parse(definition.text)):
+    for node in ast.walk(tree):
         if isinstance(node, ast.Call):
             parts += [*node.args, *(keyword.value for keyword in node.keywords)]
         elif isinstance(node, ast.FunctionDef):
@@ -84,22 +125,20 @@ def _find_passed_texts(definition: Definition) -> frozenset[str]:
     return frozenset(constant.value for constant in constants if isinstance(constant.value, str))
 
 
-def _list_default_switches(definition: Definition) -> list[tuple[str, bool]]:
-    """The switches that a function may be called without, and what they are then."""
-    node = ast.parse(definition.text).body[0]
+def _list_default_switches(tree: ast.Module) -> tuple[tuple[str, bool], ...]:
+    node = tree.body[0]
     if not isinstance(node, ast.FunctionDef) or not node.args.defaults:
-        return []
+        return ()
     pairs = zip(node.args.args[-len(node.args.defaults) :], node.args.defaults, strict=True)
-    return [
+    return tuple(
         (each.arg, default.value)
         for each, default in pairs
         if isinstance(default, ast.Constant) and isinstance(default.value, bool)
-    ]
+    )
 
 
-def _find_keys(tree: ast.AST) -> frozenset[str]:
-    """The keys of a table at the top of a module."""
-    node = tree.body[0] if isinstance(tree, ast.Module) and tree.body else None
+def _find_keys(tree: ast.Module) -> frozenset[str]:
+    node = tree.body[0]
     return _list_keys(node.value) if isinstance(node, ast.Assign) and isinstance(node.value, ast.Dict) else frozenset()
 
 
@@ -126,20 +165,15 @@ class _Pruner:
 
     def prune(self) -> Definition:
         """The definition without what nobody asks for."""
-        tree = ast.parse(self.definition.text)
-        for node in ast.walk(tree):
-            if (
-                isinstance(node, ast.Assign)
-                and isinstance(node.targets[0], ast.Name)
-                and isinstance(node.value, ast.Dict)
-            ):
-                self.tables[node.targets[0].id] = _list_keys(node.value)
-        for node in ast.walk(tree):
-            if isinstance(node, ast.Dict):
-                self._prune_table(node)
-            for block in (getattr(node, "body", None), getattr(node, "orelse", None)):
-                if isinstance(block, list):
-                    self._prune_block(block)
+        source = _read_source(self.definition.text)
+        self.tables |= source.own_tables
+        for part in source.parts:
+            if isinstance(part, ast.Dict):
+                self._prune_table(part)
+            else:
+                self._prune_block(part)
+        if not (self.dropped or self.moved or self.reworded):
+            return self.definition
         lines: list[str] = []
         for number, line in enumerate(self.lines, start=1):
             if number not in self.dropped:
@@ -147,8 +181,7 @@ class _Pruner:
                 away = self.moved.get(number, 0)
                 lines.append(line[away:] if line[:away].isspace() else line)
         text = "\n".join(lines)
-        uses = find_uses(ast.parse(text).body[0])
-        return replace(self.definition, text=text, uses=uses)
+        return replace(self.definition, text=text, uses=_read_source(text).uses)
 
     def _prune_table(self, table: ast.Dict) -> None:
         """Drop the entries of choices that are not asked for, where each has lines of its own."""
