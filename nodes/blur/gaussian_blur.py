@@ -9,7 +9,7 @@ class GaussianBlur(Filter):
     The result is within 1e-5 of scipy's gaussian_filter below a sigma of 7 pixels, and within 3e-4 (RMS) above it.
     """
 
-    aliases = ("blur", "soften", "defocus", "smooth", "fast blur", "low pass", "feather", "edge blur", "out of focus")
+    aliases = ("blur", "soften", "smooth", "fast blur", "low pass", "feather", "edge blur", "out of focus")
     traits = (Trait.RESAMPLES,)
 
     image = Image()

@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import RGBA, Doc, Fraction, Image, Pointwise, Slider, Trait
+from .._declare import RGBA, Doc, Fraction, Image, Pointwise, Slider, Trait, Wheel
 
 _ONE = (1.0, 1.0, 1.0, 1.0)
 
@@ -20,9 +20,9 @@ class ColorBalance(Pointwise):
     traits = (Trait.NEEDS_COLOR,)
 
     image = Image()
-    lift: Annotated[RGBA, Doc("Moves the shadows; 1 changes nothing.")] = _ONE
-    gamma: Annotated[RGBA, Doc("Moves the midtones; above 1 is brighter.")] = _ONE
-    gain: Annotated[RGBA, Doc("Factor on the sRGB values, which moves the highlights most.")] = _ONE
+    lift: Annotated[RGBA, Wheel(0.2), Doc("Moves the shadows; 1 changes nothing.")] = _ONE
+    gamma: Annotated[RGBA, Wheel(0.5), Doc("Moves the midtones; above 1 is brighter.")] = _ONE
+    gain: Annotated[RGBA, Wheel(0.5), Doc("Factor on the sRGB values, which moves the highlights most.")] = _ONE
     shadows: Annotated[Fraction, Doc("How much of the change is seen in the shadows.")] = 1.0
     midtones: Annotated[Fraction, Doc("How much of it is seen in the midtones.")] = 1.0
     highlights: Annotated[Fraction, Doc("How much of it is seen in the highlights.")] = 1.0

@@ -45,7 +45,8 @@ class ReadRender(Reader):
 
     aliases = (
         "render layers", "read", "load", "loader", "exr", "multilayer exr", "aov", "passes", "render passes",
-        "extractor", "3d channel extract", "import render", "g-buffer", "gbuffer", "open exr", "view layer",
+        "extractor", "3d channel extract", "import render", "g-buffer", "gbuffer", "open exr", "open render",
+        "load render", "load exr", "view layer",
     )  # fmt: skip
 
     path: Annotated[RenderPath, Doc("The render, relative to the graph's folder.")] = ""

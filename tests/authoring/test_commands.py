@@ -40,6 +40,7 @@ EXAMPLES: dict[type[EditCommand], Callable[[Session, Path], EditCommand]] = {
     c.DropFiles: lambda s, p: c.DropFiles([p / "group.json", p / "code.glsl", p / "a.png"]),
     c.Connect: lambda s, p: c.Connect(port("n0.out"), port("gain.image")),
     c.ConnectNodes: lambda s, p: c.ConnectNodes(port("n0.out"), port("gain.image")),
+    c.ConnectSelection: lambda s, p: s.select(map(ElementId, ("n0", "soften"))) or c.ConnectSelection(),
     c.Disconnect: lambda s, p: c.Disconnect(port("n1.image")),
     c.DisconnectAll: lambda s, p: c.DisconnectAll(ElementId("n1")),
     c.CutLinks: lambda s, p: c.CutLinks([port("n1.image"), port("n2.image")]),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 
 from gui_canvas import chain, empty, show
+from halation.authoring.commands import AddNode
 from halation.authoring.edits.element_id import ElementId
 from halation.authoring.edits.elements import list_decor, with_places
 from halation.graph import Group, Port
@@ -45,6 +46,12 @@ def test_a_link_that_does_not_fit_is_refused_with_a_reason(gui) -> None:
         ui.ctx.mouse_up(0)
         ui.wait(3)
         assert ui.session.graph is before
+        ui.session.apply(AddNode("merge", (900.0, 300.0)))  # a socket that fits is as near as a row: it stays as it is
+        ui.editor.canvas.fit()
+        ui.settled()
+        before = ui.session.graph
+        ui.drag("pin out bloom.out", "pin in merge.mask")
+        assert ui.session.graph is before and "search bloom" not in ui.editor.places
 
     gui(body)
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from gui_driver import Ui
 from halation import document
-from halation.authoring.commands import AddItem, AnimateValues, SetValue
+from halation.authoring.commands import AddItem, AddNode, AnimateValues, SetValue
 from halation.authoring.edits.element_id import ElementId
 from halation.graph import Graph, Key, Keys, Output, Port, Settings
 from halation.nodes import Kind, RotoShape, catalogue, join_points, name_roto_shapes, roto_shapes_of, split_points
@@ -74,6 +74,15 @@ def test_a_shape_is_drawn_with_the_pen(gui, path: Path) -> None:
             assert len(split_points(ui.session.graph.value(PORT)["shape_1"].fields["points"])) == left
         ui.keys("Ctrl+Z")
         assert list(ui.session.graph.value(PORT)) == ["box"]
+        ui.session.apply(AddNode("roto"))  # the first shape of a new node takes the place of the one that it has
+        ui.settled()
+        ui.keys("N")
+        ui.click(at(ui, 0.7, 0.2))
+        ui.click(at(ui, 0.9, 0.2))
+        fields = {
+            name: shape.fields for name, shape in ui.session.graph.value(Port(ui.session.active, "shapes")).items()
+        }
+        assert {name: len(split_points(own["points"])) for name, own in fields.items()} == {"shape_1": 2}
 
     gui(body, path)
 

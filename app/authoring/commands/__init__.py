@@ -15,6 +15,7 @@ from .layout import AlignSelection, ArrangeElements, MoveElements, PlaceElement
 from .linking import (
     Connect,
     ConnectNodes,
+    ConnectSelection,
     CutLinks,
     DeleteSelection,
     Disconnect,
@@ -73,6 +74,7 @@ __all__ = [
     "ChangePoints",
     "Connect",
     "ConnectNodes",
+    "ConnectSelection",
     "ConvertLength",
     "CutLinks",
     "CutSelection",

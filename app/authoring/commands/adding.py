@@ -10,7 +10,7 @@ from halation.nodes import Node, Plain
 from ...custom_nodes.plugins import preset_paths
 from ...document import load
 from ...errors import GraphError
-from ...graph import Group, Item, Port, did_you_mean
+from ...graph import Graph, Group, Item, Port, did_you_mean, signature
 from ...language.translation import translate
 from ...render_layers.render import is_render
 from ...watch.sequence_files import representative_file
@@ -19,6 +19,7 @@ from ..edits.element_id import ElementId
 from ..edits.elements import Place, Sizes
 from ..edits.ends import without_samples
 from ..state.open_document import OpenDocument
+from .absent_layers import list_absent_outputs
 from .command import EditCommand, Edited
 
 ABOVE = 380.0
@@ -70,7 +71,10 @@ class AddCodeFile(EditCommand[str], frozen=True):
 
 
 class AppendNode(EditCommand[str], frozen=True):
-    """Add a node behind what is selected, linked with it and in free room; gives its id. Several make a chain."""
+    """Add a node behind what is selected, linked with it and in free room; gives its id. Several make a chain.
+
+    If the viewer shows what feeds the node, it shows the node then, unless that still needs a link.
+    """
 
     addition: AddNode | AddGroupFile | AddCodeFile
     sizes: Sizes | None = None
@@ -79,8 +83,10 @@ class AppendNode(EditCommand[str], frozen=True):
         edited = self.addition.apply(document)
         assert edited.graph is not None
         selected = sorted(document.selection, key=lambda element: (element != document.active, element))
-        graph = appending.append_node(edited.graph, edited.outcome, selected, self.sizes)
-        return Edited(edited.label, edited.outcome, graph, (ElementId(edited.outcome),))
+        absent = list_absent_outputs(document, selected)
+        graph = appending.append_node(edited.graph, edited.outcome, selected, self.sizes, absent)
+        follows = _list_followed(graph, edited.outcome)
+        return Edited(edited.label, edited.outcome, graph, (ElementId(edited.outcome),), follows=follows)
 
 
 class AddMatte(EditCommand[str], frozen=True):
@@ -179,6 +185,16 @@ class DropFiles(EditCommand[tuple[str, ...]], frozen=True):
             ids.append(id)
         label = naming.node_stem(self.paths[0]) if len(ids) == 1 else f"{len(ids)} files"
         return Edited(translate("Drop {label}", label=label), tuple(ids), graph, map(ElementId, ids))
+
+
+def _list_followed(graph: Graph, id: str) -> dict[Port, Port]:
+    """What feeds a new node, with its first output; empty for a node that has no output or still needs a link."""
+    sockets = signature(graph.nodes[id])
+    needed = (Port(id, name) for name, socket in sockets.inputs.items() if not socket.optional)
+    if not sockets.outputs or any(port not in graph.links for port in needed):
+        return {}
+    output = Port(id, next(iter(sockets.outputs)))
+    return {source: output for target, source in graph.links.items() if target.node == id}
 
 
 def make_node(document: OpenDocument, type_id: str) -> Node:

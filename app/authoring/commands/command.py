@@ -12,7 +12,8 @@ carry the same `merge` token, and the history joins them into one step that goes
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
+from types import MappingProxyType
 from typing import Generic, TypeVar
 
 from msgspec import Struct
@@ -46,6 +47,8 @@ class Edited(Struct, Generic[T], frozen=True):
     """The old and the new name of an element: what the viewer shows and the files bound to inputs follow it."""
     view: Port | None = None
     """The port that the viewer shows afterwards."""
+    follows: Mapping[Port, Port] = MappingProxyType({})
+    """What the viewer shows in the place of some ports: what was made behind them, or of them."""
 
 
 class EditCommand(Struct, Generic[T], frozen=True):

@@ -20,12 +20,15 @@ class MakeGroup(EditCommand[str], frozen=True):
     name: str = ""
 
     def apply(self, document: OpenDocument) -> Edited[str]:
-        graph, id = grouping.make_group(document.graph, document.selection, self.name)
+        before = document.graph
+        graph, id = grouping.make_group(before, document.selection, self.name)
+        leaving = {before.links[end]: start for end, start in graph.links.items() if start.node == id}
         return Edited(
             translate("Group {elements}", elements=naming.describe_elements(document.selection)),
             id,
             graph,
             (ElementId(id),),
+            follows=leaving,
         )
 
 

@@ -11,6 +11,7 @@ from ..edits import appending, deleting, elements, naming, wiring
 from ..edits.element_id import ElementId
 from ..edits.selection import order_selection
 from ..state.open_document import OpenDocument
+from .absent_layers import list_absent_outputs
 from .adding import make_node
 from .command import EditCommand, Edited, count_links, require_nodes, require_selection
 
@@ -27,15 +28,34 @@ class Connect(EditCommand[None], frozen=True):
 
 
 class ConnectNodes(EditCommand[None], frozen=True):
-    """Link `source` to `target`, and all free sockets of the two nodes that have the same name and fit."""
+    """Link `source` to `target`, and all free sockets of the two nodes that have the same name and fit.
+
+    Outputs of a render that its file has no layer for are left out.
+    """
 
     source: Port
     target: Port
 
     def apply(self, document: OpenDocument) -> Edited[None]:
         graph = document.graph.connect(self.source, self.target)
-        graph = appending.connect_alike(graph, self.source.node, self.target.node)
+        absent = list_absent_outputs(document, (self.source.node,))
+        graph = appending.connect_alike(graph, self.source.node, self.target.node, absent)
         return Edited(translate("Link {source} to {target}", source=self.source, target=self.target), None, graph)
+
+
+class ConnectSelection(EditCommand[None], frozen=True):
+    """Link all that is selected to the element selected last: sockets of the same name, else the first that fits."""
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        graph, target = document.graph, document.active
+        feeders = [key for key in order_selection(document.selection, target) if key != target]
+        if target not in document.selection or not feeders:
+            raise GraphError(translate("select what is to be linked, and its target last"))
+        linked = appending.feed_element(graph, target, feeders, list_absent_outputs(document, feeders))
+        if linked is graph or linked.links == graph.links:
+            raise GraphError(translate("nothing that is selected fits a free socket of '{target}'", target=target.name))
+        label = translate("Link {elements}", elements=naming.describe_elements(document.selection))
+        return Edited(label, None, linked)
 
 
 class Disconnect(EditCommand[None], frozen=True):

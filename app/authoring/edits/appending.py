@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 from ...errors import GraphError
 from ...graph import OUTPUTS, Graph, Port, signature
@@ -27,28 +27,51 @@ def list_alike(graph: Graph, source_id: str, target_id: str) -> dict[Port, Port]
     return {target: source for target, source in pairs.items() if why_not_linkable(graph, source, target) is None}
 
 
-def connect_alike(graph: Graph, source_id: str, target_id: str) -> Graph:
-    """A graph where all sockets of the same name of two nodes are linked, as far as they are free and fit."""
+def connect_alike(graph: Graph, source_id: str, target_id: str, absent: Collection[Port] = ()) -> Graph:
+    """A graph where all sockets of the same name of two nodes are linked, as far as they are free and fit.
+
+    Those of `absent`, which have nothing to give, are left out.
+    """
     for target, source in list_alike(graph, source_id, target_id).items():
-        graph = graph.connect(source, target)
+        if source not in absent:
+            graph = graph.connect(source, target)
     return graph
 
 
-def append_node(graph: Graph, id: str, feeders: Iterable[ElementId], sizes: Sizes | None = None) -> Graph:
+def append_node(
+    graph: Graph, id: str, feeders: Iterable[ElementId], sizes: Sizes | None = None, absent: Collection[Port] = ()
+) -> Graph:
     """A graph where node `id`, which has no links, is fed by the first socket of each element that fits one of its own.
 
     It lies right of the first of them in free room. Where that fed nothing but outputs of the graph, the new node
-    stands between: the picture that comes out is that of the longer chain. Without feeders that fit, the node only
-    moves away from what it would cover.
+    stands between: the picture that comes out is that of the longer chain. Where nothing feeds an output of the graph,
+    the node does. Without feeders that fit, it only moves away from what it would cover.
     """
     sources: list[Port] = []
     for element in feeders:
         before = graph.links
-        graph = _feed(graph, element, id)
+        graph = _feed(graph, element, id, absent)
         sources += [source for target, source in graph.links.items() if target not in before]
     if sources:
         graph = _move_outputs_behind(graph, sources[0], id)
+    graph = _feed_first_output(graph, id)
     return _place_node(graph, ElementId(id), sources, sizes)
+
+
+def feed_element(graph: Graph, target: ElementId, feeders: Iterable[ElementId], absent: Collection[Port] = ()) -> Graph:
+    """A graph where elements feed a node, or an output of the graph, by sockets that are free; those that fit nothing
+    are left out. Outputs in `absent` have nothing to give.
+    """
+    for element in feeders:
+        if target in graph.nodes:
+            graph = _feed(graph, element, target, absent)
+        elif (end := target.port) is not None and target.kind == "output" and end not in graph.links:
+            try:
+                source = first_source(graph, element, end) if element in graph.nodes else element.port
+                graph = graph.connect(source, end) if source is not None else graph
+            except GraphError:
+                continue
+    return graph
 
 
 def estimate_sizes(graph: Graph, sizes: Sizes | None = None) -> dict[ElementId, tuple[float, float]]:
@@ -66,13 +89,14 @@ def _estimate_size(graph: Graph, element: ElementId) -> tuple[float, float]:
     return width, _HEADER + rows * _ROW + _PICTURE
 
 
-def _feed(graph: Graph, element: ElementId, id: str) -> Graph:
+def _feed(graph: Graph, element: ElementId, id: str, absent: Collection[Port]) -> Graph:
     """A graph where an element feeds a node: by sockets of the same name, else by its first output that fits."""
     if element in graph.nodes:
-        alike = connect_alike(graph, element, id)
+        alike = connect_alike(graph, element, id, absent)
         if alike is not graph:
             return alike
-        outputs = [Port(element, name) for name in signature(graph.nodes[element]).outputs]
+        ports = (Port(element, name) for name in signature(graph.nodes[element]).outputs)
+        outputs = [port for port in ports if port not in absent]
     else:
         outputs = [element.port] if element.port and element.kind == "input" else []
     for output in outputs:
@@ -98,6 +122,19 @@ def _move_outputs_behind(graph: Graph, source: Port, id: str) -> Graph:
     for target in readers:
         try:
             graph = graph.connect(first_source(graph, id, target), target)
+        except GraphError:
+            continue
+    return graph
+
+
+def _feed_first_output(graph: Graph, id: str) -> Graph:
+    """A graph where node `id` feeds the first output that it fits, if nothing feeds any: it begins the picture."""
+    if any(target.node == OUTPUTS for target in graph.links):
+        return graph
+    for name in graph.outputs:
+        target = Port(OUTPUTS, name)
+        try:
+            return graph.connect(first_source(graph, id, target), target)
         except GraphError:
             continue
     return graph

@@ -66,6 +66,13 @@ class PassPictures(StepwiseWork):
         self._request, self.fault = request, ""
         self._steps = self._run(request)
 
+    def clear(self) -> None:
+        """Show no passes: there is nothing to look at."""
+        if self._request is not None:
+            self.stop()
+            self._request, self.fault, self.passes, self.seconds = None, "", [], []
+            self.revision += 1
+
     def close(self) -> None:
         """Give back what the device holds."""
         self.stop()

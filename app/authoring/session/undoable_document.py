@@ -35,6 +35,7 @@ class UndoableDocument(OpenDocument):
     def apply(self, command: EditCommand[T]) -> T:
         """Apply a command as one step of the history; returns its outcome, such as the id of a new node."""
         edited = command.apply(self)
+        shown = self.views.find_port() if edited.follows else None
         if edited.renamed is not None:
             self._follow_rename(*edited.renamed)
         if edited.root is not None:
@@ -44,6 +45,8 @@ class UndoableDocument(OpenDocument):
             self._apply_graph(edited, edited.graph)
         if edited.view is not None:
             self.views.show(edited.view)
+        if shown is not None and shown in edited.follows:
+            self.views.follow(edited.follows[shown])
         return edited.outcome
 
     def undo(self) -> None:

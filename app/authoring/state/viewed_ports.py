@@ -28,7 +28,8 @@ class ViewedPorts:
     def __init__(self, document: DocumentState) -> None:
         self._document = document
         self._chosen: dict[tuple[GroupPath, Side], tuple[Port, ...]] = {}
-        """For each graph and side the port that was chosen, then the names that it had before it was renamed."""
+        """For each graph and side the port that was chosen, then what counts where that is not there: the names that
+        it had before it was renamed, and the ports that it followed."""
         self._memo = Memo()
 
     def find_port(self, side: Side = "A") -> Port | None:
@@ -60,6 +61,13 @@ class ViewedPorts:
             raise GraphError(translate("there is no '{port}' to show", port=port))
         self._chosen[self._document.place, side] = (port,)
         self._document.revision += 1
+
+    def follow(self, successor: Port) -> None:
+        """Show what comes in the place of the port that the user chose on side A; if it vanishes, that comes back."""
+        key = self._document.place, "A"
+        if chosen := self._chosen.get(key):
+            self._chosen[key] = (successor, *chosen)
+            self._document.revision += 1
 
     def show_element(self, element: ElementId, side: Side = "A") -> None:
         """Show a node's first output, or the one after that which is shown; an input or output of the graph itself."""

@@ -54,6 +54,12 @@ def _is_node(context: CanvasContext) -> bool:
     return context.session.active in context.session.graph.nodes
 
 
+def _is_viewable(context: CanvasContext) -> bool:
+    """True for a node, and for an input or output of the graph."""
+    active = context.session.active
+    return active in context.session.graph.nodes or active.port is not None
+
+
 def _is_group(context: CanvasContext) -> bool:
     return isinstance(context.session.graph.nodes.get(context.session.active), Group)
 
@@ -145,7 +151,7 @@ GRAPH: tuple[Action[CanvasContext], ...] = (
         "Graph",
         "V",
         "graph",
-        _is_node,
+        _is_viewable,
         contexts=frozenset({"node"}),
         doc="Show this node in the viewer. Again: its next output.",
     ),
@@ -156,7 +162,7 @@ GRAPH: tuple[Action[CanvasContext], ...] = (
         "Graph",
         "Shift+V",
         "graph",
-        _is_node,
+        _is_viewable,
         contexts=frozenset({"node"}),
         doc="Show this node on side B, to compare with it.",
     ),

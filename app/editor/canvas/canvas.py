@@ -17,7 +17,7 @@ from ..toolkit.words import show_tip
 from .brush import DETAILS_FROM, DrawContext, TextCache, make_canvas_colors
 from .crumbs import draw_crumbs
 from .frame import CanvasFrame
-from .geometry import Point, Rect, contains, find_bounds, fit_view, make_transform, reveal_rect
+from .geometry import Point, Rect, avoid_corner, contains, find_bounds, fit_view, make_transform, reveal_rect
 from .gestures import Band, CutGesture, Idle, LinkGesture, MoveGesture, ResizeGesture, make_band_rect
 from .hints import explain_tool, hint_at_beginning
 from .layout import PICTURE
@@ -201,7 +201,9 @@ class Canvas:
         boxes = [scene.boxes[key] for key in view.pending_reveal if key in scene.boxes]
         if around := find_bounds(box.rect for box in boxes):
             below = around[3] + (PICTURE if self._context.store.current.thumbnails else 0.0)  # it comes a moment later
-            view.center = reveal_rect((*around[:3], below), view.center, view.zoom, size)
+            rect = *around[:3], below
+            center = reveal_rect(rect, view.center, view.zoom, size)
+            view.center = avoid_corner(rect, center, view.zoom, size, self._minimap.find_corner(size))
         view.pending_reveal = ()
 
     def _is_covered(self, panel: Rect) -> bool:

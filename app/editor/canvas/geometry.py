@@ -92,6 +92,27 @@ def reveal_rect(rect: Rect, center: Point, zoom: float, size: Point) -> Point:
     return moved[0], moved[1]
 
 
+def avoid_corner(rect: Rect, center: Point, zoom: float, size: Point, corner: Point) -> Point:
+    """The center of the view, moved so that what lies in its lower right corner does not cover a rectangle.
+
+    `size` of the panel and of the `corner` are in pixels at UI scale 1. The shorter way counts; where the rectangle
+    would leave the panel on both, nothing moves.
+    """
+    halves = [side / zoom / 2 for side in size]
+    covered = [
+        high - (middle + half - side / zoom)
+        for high, middle, half, side in zip(rect[2:], center, halves, corner, strict=True)
+    ]
+    if min(covered) <= 0.0:
+        return center
+    room = [low - (middle - half) for low, middle, half in zip(rect[:2], center, halves, strict=True)]
+    ways = [axis for axis in (0, 1) if covered[axis] <= room[axis]]
+    if not ways:
+        return center
+    axis = min(ways, key=covered.__getitem__)
+    return (center[0] + covered[0], center[1]) if axis == 0 else (center[0], center[1] + covered[1])
+
+
 def contains(rect: Rect, x: float, y: float, margin: float = 0.0) -> bool:
     """True if a point is in a rectangle, or at most `margin` outside."""
     return rect[0] - margin <= x <= rect[2] + margin and rect[1] - margin <= y <= rect[3] + margin

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection
 
 from msgspec import Struct, field
@@ -158,7 +159,7 @@ def find_snap_pin(scene: CanvasScene, link: LinkGesture, at: Point, reach: float
         if port not in link.targets:
             continue
         place = box.x + pin.x, box.y + pin.y
-        gap = ((place[0] - at[0]) ** 2 + (place[1] - at[1]) ** 2) ** 0.5
+        gap = math.hypot(place[0] - at[0], place[1] - at[1])
         if gap <= reach and (best is None or gap < best[0]):
             best = gap, port, place
         if box.key == hovered_key and not pin.value:
@@ -171,12 +172,14 @@ def find_snap_pin(scene: CanvasScene, link: LinkGesture, at: Point, reach: float
 
 
 def find_refused_pin(scene: CanvasScene, link: LinkGesture, at: Point, reach: float) -> Port | None:
-    """The pin under the pointer that a dragged link does not fit."""
-    for port, box, pin in scene.list_pins(not link.output):
-        near = abs(box.x + pin.x - at[0]) <= reach and abs(box.y + pin.y - at[1]) <= reach
-        if near and port not in link.targets:
-            return port
-    return None
+    """The pin under the pointer if a dragged link does not fit it; where pins lie close together the nearest counts."""
+    near = [
+        (math.hypot(box.x + pin.x - at[0], box.y + pin.y - at[1]), port)
+        for port, box, pin in scene.list_pins(not link.output)
+        if abs(box.x + pin.x - at[0]) <= reach and abs(box.y + pin.y - at[1]) <= reach
+    ]
+    nearest = min(near, default=None)
+    return nearest[1] if nearest and nearest[1] not in link.targets else None
 
 
 def find_insertion(

@@ -32,9 +32,15 @@ class Minimap(Struct):
         """The rectangle of the minimap, or None in a small panel and while everything is in view."""
         scale = ui_scale()
         width, height, gap = _SIZE[0] * scale, _SIZE[1] * scale, _GAP * scale
-        if not self.is_needed or panel[2] - panel[0] < width * 2.2 or panel[3] - panel[1] < height * 2.2:
+        if not self.is_needed or not _has_room((panel[2] - panel[0], panel[3] - panel[1]), scale):
             return None
         return panel[2] - gap - width, panel[3] - gap - height, panel[2] - gap, panel[3] - gap
+
+    def find_corner(self, size: Point) -> Point:
+        """Width and height of the corner that the minimap takes of a panel of `size`, in pixels at UI scale 1."""
+        if not self.context.store.current.minimap or not _has_room(size, 1.0):
+            return 0.0, 0.0
+        return _SIZE[0] + 2 * _GAP, _SIZE[1] + 2 * _GAP
 
     def draw(self, brush: DrawContext, panel: Rect, scene: CanvasScene) -> None:
         """Draw the minimap, and pan the view to a click in it.
@@ -90,3 +96,8 @@ class Minimap(Struct):
         if self.dragging:
             mouse = imgui.get_mouse_pos()
             self.context.canvas.center = (mouse.x - origin[0]) / scale, (mouse.y - origin[1]) / scale
+
+
+def _has_room(size: Point, scale: float) -> bool:
+    """False for a panel that the minimap would take too much of."""
+    return size[0] >= _SIZE[0] * scale * 2.2 and size[1] >= _SIZE[1] * scale * 2.2

@@ -299,7 +299,8 @@ class CanvasMouse(Struct):
         on nothing, a link that was picked up is removed, and a new one opens the search for nodes that fit.
         """
         context, session = frame.context, frame.context.session
-        snap = find_snap_pin(frame.scene, link, frame.pointer, _SNAP_REACH * frame.scale / frame.to.scale)
+        refused_port = find_refused_pin(frame.scene, link, frame.pointer, frame.reach)
+        snap = self._find_snap(frame, link) if refused_port is None else None
         if snap:
             snap_port = snap[0]
             source, target = (link.port, snap_port) if link.output else (snap_port, link.port)
@@ -315,14 +316,15 @@ class CanvasMouse(Struct):
         elif not frame.is_far(link.start):
             if link.output and link.detached is None:
                 context.log.attempt(lambda: session.views.show(link.port))
-        elif find_refused_pin(frame.scene, link, frame.pointer, frame.reach) is None and not frame.scene.find_node(
-            *frame.pointer
-        ):
+        elif refused_port is None and not frame.scene.find_node(*frame.pointer):
             if link.detached:
                 target = link.detached
                 context.log.attempt(lambda: session.apply(Disconnect(target)))
             elif contains(frame.panel, *frame.screen):
                 self.requests.search = link.port, link.output
+
+    def _find_snap(self, frame: CanvasFrame, link: LinkGesture) -> tuple[Port, Point] | None:
+        return find_snap_pin(frame.scene, link, frame.pointer, _SNAP_REACH * frame.scale / frame.to.scale)
 
     def _links_nodes(self, frame: CanvasFrame, source: Port, target: Port, pin: Point) -> bool:
         """True if all sockets of the same name are meant: dropped on a node, or on a socket that is called alike.
@@ -347,9 +349,7 @@ class CanvasMouse(Struct):
             case CutGesture():
                 self.preview.crossed = frame.scene.links.find_crossed(gesture.start, frame.pointer)
             case LinkGesture():
-                self.preview.snap = find_snap_pin(
-                    frame.scene, gesture, frame.pointer, _SNAP_REACH * frame.scale / frame.to.scale
-                )
+                self.preview.snap = self._find_snap(frame, gesture)
                 if refused_port := find_refused_pin(frame.scene, gesture, frame.pointer, frame.reach):
                     source, target = (gesture.port, refused_port) if gesture.output else (refused_port, gesture.port)
                     if refused_port != gesture.port and source.node != target.node:

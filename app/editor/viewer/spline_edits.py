@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from halation.nodes import Row, insert_point
+from halation.nodes import Node, Row, insert_point
 
 from ...authoring.commands import AddItem, ChangePoints, DropPointKeys, KeyPoints, MovePoints, SplineEdit
 from ...language.translation import mark, translate
@@ -285,7 +285,19 @@ def find_drawn(context: ViewerContext) -> SplineOutline | None:
 
 def find_pen_frame(context: ViewerContext) -> SplineOutline | None:
     """The shape in whose coordinates the pen sets the next point; None for a new one, which has not moved yet."""
-    return find_drawn(context) or (find_own_outline(context) if find_list(context) is None else None)
+    return find_drawn(context) or _find_replaced(context)
+
+
+def _find_replaced(context: ViewerContext) -> SplineOutline | None:
+    """The shape that the pen draws anew: the only one of a node, or the one of a list that nobody has changed."""
+    port = find_list(context)
+    if port is None:
+        return find_own_outline(context)
+    item = context.session.graph.nodes.get(port.node)
+    if not isinstance(item, Node) or item.setting(port.socket) != item.values[port.socket].default:
+        return None
+    outlines = list_outlines(context)
+    return outlines[0] if len(outlines) == 1 else None
 
 
 def aim_pen(context: ViewerContext, start: Point, to: Point | None) -> None:
@@ -302,7 +314,8 @@ def aim_pen(context: ViewerContext, start: Point, to: Point | None) -> None:
 def lift_pen(context: ViewerContext) -> None:
     """Add the pending point to the shape, or a new shape with it: one step of undo for each point.
 
-    Of a node with one spline of its own, the first point takes the place of all there are.
+    Of a node with one spline of its own, and of the shape that a new list begins with, the first point takes the place
+    of all there are.
     """
     pen, port = context.viewer.pen, find_list(context)
     point, pen.pending = pen.pending, None
@@ -315,11 +328,11 @@ def lift_pen(context: ViewerContext) -> None:
         select_points(context, outline, (len(outline.points),))
         return
 
-    if port is None:
-        if (own := find_own_outline(context)) is not None:
-            _change_points(context, own, lambda _: (point,), mark("Draw {shape}"), (None,))
-            pen.shape = str(own.points_port)
-            select_points(context, own, (0,))
+    if (replaced := _find_replaced(context)) is not None:
+        _change_points(context, replaced, lambda _: (point,), mark("Draw {shape}"), (None,))
+        pen.shape = str(replaced.points_port)
+        select_points(context, replaced, (0,))
+    if replaced is not None or port is None:
         return
 
     def add() -> None:

@@ -10,6 +10,7 @@ from ..actions.view import VIEW
 from ..browser.context import BrowserContext
 from ..canvas.actions import GRAPH
 from ..canvas.context import CanvasContext
+from ..canvas.walking import WALKING
 from ..code.context import CodeContext
 from ..command_palette.context import PaletteContext
 from ..curves.actions import ANIMATION
@@ -107,6 +108,7 @@ def bind_actions(editor: Editor, contexts: Contexts) -> None:
     bind = editor.actions.bind
     bind(DOCUMENTS, contexts.documents)
     bind(EDITS, EditContext.compose(editor, editor.canvas))
+    bind(WALKING, contexts.canvas)
     bind(GRAPH, contexts.canvas)
     bind(CODE, contexts.code_files)
     bind(VIEWER, contexts.viewer)

@@ -6,13 +6,17 @@ from itertools import combinations
 from pathlib import Path
 
 import pytest
-from halation.authoring.commands import AddNode, AppendNode, Connect, ConnectNodes, DropFiles
+from halation import presets
+from halation.authoring.commands import AddNode, AppendNode, Connect, ConnectNodes, DropFiles, MakeGroup
 from halation.authoring.edits.element_id import ElementId
 from halation.authoring.edits.layout import positions
 from halation.authoring.session import Session
 from halation.editor.canvas.layout import NodeFacts, make_node_layout
 from halation.graph import Graph, Port
+from halation.render_layers.render import read_render
 from halation.resources.sandbox import UNRESTRICTED
+
+NEON = presets.paths()[0].parent / "samples" / "neon.exr"
 
 
 @pytest.fixture
@@ -42,6 +46,7 @@ def test_several_in_a_row_make_a_chain_that_feeds_the_output(session: Session) -
     ids = [append(session, kind) for kind in ("constant", "bloom", "vignette", "film_grain", "exposure")]
     links = session.graph.links
     assert [links[Port(id, "image")].node for id in ids[1:]] == ids[:-1]
+    assert links[Port("outputs", "image")] == Port(ids[-1], "out")
     assert not find_overlaps(session.graph)
     left = [session.positions[ElementId(id)][0] for id in ids]
     assert left == sorted(left) and len(set(left)) == len(left)
@@ -52,10 +57,31 @@ def test_several_in_a_row_make_a_chain_that_feeds_the_output(session: Session) -
 
 def test_an_output_of_the_graph_moves_behind_the_new_node(session: Session) -> None:
     first = append(session, "constant")
-    session.apply(Connect(Port(first, "out"), Port("outputs", "image")))
+    assert session.graph.links == {Port("outputs", "image"): Port(first, "out")}  # nothing fed it
     second = append(session, "vignette")
     assert session.graph.links[Port("outputs", "image")] == Port(second, "out")
     assert session.positions[ElementId.of("output", "image")][0] > session.positions[ElementId(second)][0]
+
+
+def test_the_viewer_goes_along_where_it_shows_what_feeds_the_new_node(session: Session) -> None:
+    first = append(session, "constant")
+    assert session.views.find_port() == Port("outputs", "image")  # which shows what is new in any case
+    session.views.show(Port(first, "out"))
+    second = append(session, "vignette")
+    assert session.views.find_port() == Port(second, "out")
+    session.undo()
+    assert session.views.find_port() == Port(first, "out")
+    session.redo()
+    assert session.views.find_port() == Port(second, "out")
+    session.apply(MakeGroup())  # of the vignette
+    assert session.views.find_port() == Port("group", "out")
+    session.undo()
+    assert session.views.find_port() == Port(second, "out")
+    append(session, "merge")  # its background is not linked yet
+    assert session.views.find_port() == Port(second, "out")
+    session.select([ElementId(first)])
+    append(session, "exposure")
+    assert session.views.find_port() == Port(second, "out")  # the user looks at something else
 
 
 def test_a_node_that_feeds_others_keeps_its_links(session: Session) -> None:
@@ -81,7 +107,7 @@ def test_two_selected_nodes_feed_two_inputs(session: Session) -> None:
 
 def test_what_takes_no_picture_is_not_linked_and_covers_nothing(session: Session) -> None:
     ids = [append(session, "constant") for _ in range(4)]
-    assert not session.graph.links
+    assert set(session.graph.links) == {Port("outputs", "image")}  # of the first one
     assert len(ids) == 4 and not find_overlaps(session.graph)
 
 
@@ -113,6 +139,19 @@ def test_occlusion_behind_a_selected_render_takes_all_its_layers(session: Sessio
     fed = {target.socket: source.socket for target, source in session.graph.links.items() if target.node == occlusion}
     assert fed == {name: name for name in ("depth", "normal", "camera", "albedo")}
     assert not find_overlaps(session.graph), render
+
+
+def test_a_layer_that_the_file_lacks_is_not_linked(session: Session) -> None:
+    (render,) = session.apply(DropFiles([NEON], (0.0, 0.0)))
+    assert "occlusion" not in read_render(str(NEON), sandbox=UNRESTRICTED).layers
+    session.select([ElementId(render)])
+    light = append(session, "deferred_lighting")
+    fed = {target.socket for target in session.graph.links if target.node == light}
+    assert {"albedo", "normal", "position", "emission"} <= fed and "occlusion" not in fed
+    session.select(())
+    other = append(session, "deferred_lighting")
+    session.apply(ConnectNodes(Port(render, "albedo"), Port(other, "albedo")))
+    assert {target.socket for target in session.graph.links if target.node == other} == fed
 
 
 def test_dropped_files_stand_in_a_column(session: Session, tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from halation.authoring.edits.link_curves import make_curve
 from halation.editor.canvas.geometry import (
+    avoid_corner,
     find_bounds,
     find_crossed,
     find_crossing,
@@ -103,3 +104,18 @@ def test_snapping_and_panning_at_the_border() -> None:
     assert find_pan_direction(panel, 200.0, 150.0, 20.0) == (0.0, 0.0)
     assert find_pan_direction(panel, -100.0, 310.0, 20.0) == (-1.0, 1.0)
     assert find_pan_direction(panel, 390.0, 150.0, 20.0)[0] == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(
+    ("rect", "moved"),
+    [
+        ((0.0, 0.0, 100.0, 100.0), (0.0, 0.0)),  # in the middle: nothing covers it
+        ((250.0, 160.0, 380.0, 240.0), (180.0, 0.0)),  # 180 pixels to the left, or 190 up
+        ((-300.0, 160.0, 380.0, 240.0), (0.0, 190.0)),  # too wide for the way to the left
+        ((-390.0, -240.0, 390.0, 240.0), (0.0, 0.0)),  # as large as the panel
+    ],
+)
+def test_what_is_revealed_does_not_lie_below_the_map(rect, moved) -> None:
+    assert avoid_corner(rect, (0.0, 0.0), 1.0, (800.0, 500.0), (200.0, 200.0)) == moved
+    halved = avoid_corner(tuple(2 * side for side in rect), (0.0, 0.0), 0.5, (800.0, 500.0), (200.0, 200.0))
+    assert halved == tuple(2 * part for part in moved)

@@ -150,6 +150,14 @@ def test_a_dragged_link_fits_what_makes_no_loop_and_snaps() -> None:
     assert find_refused_pin(scene, link, pin(scene, "exposure.image", False), 8.0) == P("exposure.image")
 
 
+def test_of_pins_within_reach_the_nearest_says_whether_a_link_fits() -> None:
+    graph = chain("exposure").add("merge", catalogue()["merge"]())
+    scene = staged(graph)
+    link = LinkGesture(P("exposure.out"), True, None, find_fitting_pins(graph, scene, P("exposure.out"), True))
+    for socket, refused in (("a", None), ("b", None), ("mask", P("merge.mask"))):  # the mask takes no picture
+        assert find_refused_pin(scene, link, pin(scene, f"merge.{socket}", False), 60.0) == refused
+
+
 def test_a_free_node_on_a_link_can_be_put_into_it() -> None:
     graph = chain("exposure", "bloom").add("clip", catalogue()["clip"]())
     scene = staged(graph)
