@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from halation import presets
 from halation.editor.shared.dialogs import Browse
+from imgui_bundle import imgui
 
 FOLDER = presets.paths()[0].parent
 
@@ -178,5 +179,29 @@ def test_an_absolute_path_is_typed_to_save_and_to_open(gui, shelf: Path) -> None
         ui.keys("Ctrl+O")
         ui.type(f"{shelf}/")
         ui.until(lambda: "file inner" in ui.editor.places)
+
+    gui(body, presets.paths()[0])
+
+
+def test_the_buttons_are_reached_by_keyboard(gui, shelf: Path) -> None:
+    def body(ui) -> None:
+        at(ui, shelf)
+        (shelf / ".secret.json").write_text("{}")
+        ui.keys("Ctrl+O")
+        ui.until(lambda: "file inner" in ui.editor.places)
+        ui.keys("Shift+Tab")
+        context = imgui.get_current_context()
+        assert context.nav_cursor_visible and not imgui.get_io().want_text_input
+        ui.keys("Tab")
+        ui.keys("Tab")  # past the new folder, to hidden files
+        ui.keys("Enter")
+        ui.until(lambda: "file .secret.json" in ui.editor.places)
+        ui.keys("Tab")
+        ui.keys("Tab")  # the first place
+        ui.shot("files_walked.png")
+        ui.keys("Enter")
+        ui.until(lambda: imgui.get_io().want_text_input)  # the field takes letters again
+        assert ui.editor.dialogs.browse is not None
+        ui.keys("Escape")
 
     gui(body, presets.paths()[0])

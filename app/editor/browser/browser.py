@@ -51,6 +51,8 @@ class FileBrowser:
         self._naming = False
         self._focus = ""
         self._elsewhere = False
+        self._walks = False
+        """True after Shift+Tab, which leads to the buttons, until the field below the files has the keyboard again."""
         self._memory: FolderMemory = {}
 
     def close(self) -> None:
@@ -88,6 +90,8 @@ class FileBrowser:
 
     def _complete(self, text: str, browsing: Browsing, data: imgui.InputTextCallbackData) -> int:
         """Tab: complete the path that is typed in a field."""
+        if imgui.get_io().key_shift:
+            return 0
         completed = complete_name(text, browsing.folder, browsing.endings)
         if completed != text:
             data.delete_chars(0, data.buf_text_len)
@@ -97,6 +101,10 @@ class FileBrowser:
     def _draw_path_bar(self, browsing: Browsing) -> None:
         with font(self._context, "bold", 18.0):
             imgui.text_unformatted(browsing.browse.title)
+        if self._focus == "walk":
+            imgui.set_keyboard_focus_here()
+            imgui.set_nav_cursor_visible(True)
+            self._focus = ""
         if quiet_button(self._context, icons.ICON_FA_ARROW_UP, "folder up", translate("Parent folder (Backspace)")):
             self._go_to(browsing, browsing.folder.parent)
         imgui.same_line()
@@ -104,7 +112,11 @@ class FileBrowser:
         buttons = width_of_buttons(*button_icons) + imgui.get_style().item_spacing.x
         imgui.set_next_item_width(imgui.get_content_region_avail().x - buttons)
         completes = partial(self._complete, self._path, browsing)
+        imgui.push_item_flag(
+            int(imgui.ItemFlags_.no_tab_stop), True
+        )  # Tab completes in it, and the other one takes paths
         entered, self._path = imgui.input_text("##path", self._path, _ENTERED | _COMPLETES, completes)
+        imgui.pop_item_flag()
         record(self._context, "path field")
         self._elsewhere = imgui.is_item_active() or imgui.is_item_deactivated()
         if entered:
@@ -145,7 +157,7 @@ class FileBrowser:
         self._path, self._focus = str(browsing.folder), "field"
 
     def _draw_places(self, browsing: Browsing, height: float) -> None:
-        imgui.begin_child("places", ImVec2(176 * ui_scale(), height), 0, int(imgui.WindowFlags_.no_nav))
+        imgui.begin_child("places", ImVec2(176 * ui_scale(), height), imgui.ChildFlags_.nav_flattened.value)
         for index, place in enumerate(browsing.offered):
             room = imgui.get_content_region_avail().x - 30 * ui_scale()
             label = f"{PLACE_ICONS[place.kind]}  {cut_middle(place.title, room)}##{index}"
@@ -213,9 +225,12 @@ class FileBrowser:
 
     def _draw_name_field(self, browsing: Browsing) -> None:
         """Draw the field below the files. It takes the keyboard whenever nothing else has it, so that typing always
-        finds files. Backspace leaves the folder only if the field was empty before the key was typed into it.
+        finds files; Shift+Tab leads to the buttons. Backspace leaves the folder only if the field was empty before the
+        key was typed into it.
         """
-        free = not imgui.is_any_item_active() and not self._naming and self._context.dialogs.question is None
+        is_asked = self._naming or self._context.dialogs.question is not None
+        self._walks &= not imgui.is_mouse_down(imgui.MouseButton_.left)
+        free = not imgui.is_any_item_active() and not is_asked and not self._walks
         if self._focus == "field" or free:
             imgui.set_keyboard_focus_here()
             self._focus = ""
@@ -227,7 +242,7 @@ class FileBrowser:
                 "##name", translate("Name of the file"), browsing.name, _COMPLETES, completes
             )
             if changed:
-                browsing.name, browsing.chosen = name, -1
+                browsing.rename(name)
         else:
             completes = partial(self._complete, browsing.query, browsing)
             hint = translate("Type to find, or a path; Tab completes it")
@@ -235,7 +250,10 @@ class FileBrowser:
             if changed:
                 browsing.search(query)
         record(self._context, "file field")
-        if not self._elsewhere and self._context.dialogs.question is None:
+        if imgui.is_item_active():
+            self._walks = imgui.get_io().key_shift and imgui.is_key_pressed(imgui.Key.tab)
+            self._focus = "walk" if self._walks else self._focus
+        if not self._elsewhere and not self._walks and self._context.dialogs.question is None:
             if imgui.is_key_pressed(imgui.Key.backspace, False) and empty and not browsing.browse.saving:
                 self._go_to(browsing, browsing.folder.parent)
             if is_enter_pressed(repeats=False):
@@ -269,7 +287,7 @@ class FileBrowser:
             return
         item, target = browsing.item, browsing.typed_file or browsing.target
         if item and item.is_folder:
-            self._go_to(browsing, browsing.folder / item.name)
+            self._go_to(browsing, browsing.listing.folder / item.name)
             return
         if target is None or self._context.dialogs.question is not None:
             return

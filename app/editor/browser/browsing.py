@@ -19,7 +19,7 @@ from ...media.pictures.file_endings import list_readable_endings
 from ...resources.user_folders import first_folder
 from ..shared.dialogs import Browse
 from .listing import Item, Listing, Order
-from .places import Place, complete_path, is_path, names_folder, places
+from .places import Place, complete_path, is_path, last_name, names_folder, places
 
 if TYPE_CHECKING:
     from .context import BrowserContext
@@ -69,8 +69,14 @@ class Browsing(Struct):
 
     @property
     def items(self) -> tuple[Item, ...]:
-        """The items that are listed."""
-        return self.listing.arrange(self.endings, self.query, self.order, self.down, self.hidden)
+        """The items that are listed: of a path that is being typed those of its folder that begin like its last name,
+        as Tab would complete it.
+        """
+        if self.browse.saving or not is_path(self.query):
+            return self.listing.arrange(self.endings, self.query, self.order, self.down, self.hidden)
+        stem = last_name(self.query)
+        hidden = self.hidden or stem.startswith(".")
+        return self.listing.arrange(self.endings, "", self.order, self.down, hidden, stem)
 
     @property
     def item(self) -> Item | None:
@@ -81,13 +87,28 @@ class Browsing(Struct):
     def search(self, query: str) -> None:
         """Filter by name; the best match is chosen."""
         self.query, self.chosen = query, self.first
+        self._list_typed_folder(query)
+
+    def rename(self, name: str) -> None:
+        """Save under another name or path, as typed."""
+        self.name, self.chosen = name, -1
+        self._list_typed_folder(name)
+
+    def _list_typed_folder(self, text: str) -> None:
+        """List the folder of a path that is being typed; of a name, that of the dialog."""
+        folder = self.folder
+        if is_path(text):
+            folder = complete_path(text.strip().strip('"').removesuffix(last_name(text)), self.folder)
+        if folder != self.listing.folder:
+            self.listing.show(folder)
 
     def choose(self, index: int) -> None:
         """Choose an item; while saving, a file gives its name."""
         self.chosen = index
         item = self.item
         if self.browse.saving and item and not item.is_folder:
-            self.name = item.name
+            here = self.listing.folder
+            self.name = item.name if here == self.folder else str(here / item.name)
 
     @property
     def target(self) -> Path | None:
@@ -96,7 +117,7 @@ class Browsing(Struct):
         While a file is saved, the user may type a path instead of a name; a path that ends with a folder is no answer.
         """
         if not self.browse.saving:
-            return self.folder / self.item.name if self.item and not self.item.is_folder else None
+            return self.listing.folder / self.item.name if self.item and not self.item.is_folder else None
         if names_folder(self.name):
             return None
         path = complete_path(self.name, self.folder)

@@ -135,7 +135,7 @@ class FileGrid:
                 imgui.internal.scroll_to_item()
                 self.reveal = False
         low = imgui.get_item_rect_min()
-        self._draw_picture(browsing.folder / item.name, item, low, pictures)
+        self._draw_picture(browsing.listing.folder / item.name, item, low, pictures)
         lines = imgui.get_window_draw_list()
         name = cut_middle(item.name, _PICTURE[0] * scale)
         left = low.x + (size.x - imgui.calc_text_size(name).x) / 2

@@ -47,15 +47,18 @@ def arrange_items(
     order: Order = "name",
     down: bool = False,
     hidden: bool = False,
+    start: str = "",
 ) -> tuple[Item, ...]:
     """Sorted items: folders first, then files whose name ends in one of `endings` (none: all).
 
-    With a `query` the best matches come first instead.
+    With a `query` the best matches come first instead; with a `start` only names count that begin like it.
     """
     listed = [
         item
         for item in items
-        if (hidden or not item.hidden) and (item.is_folder or not endings or extension_of(item.name) in endings)
+        if (hidden or not item.hidden)
+        and (item.is_folder or not endings or extension_of(item.name) in endings)
+        and item.name.lower().startswith(start.lower())
     ]
     keys = {
         "name": lambda item: _natural(item.name),
@@ -80,11 +83,15 @@ class Listing:
         self._arguments: tuple[object, ...] = ()
         self._shown: tuple[Item, ...] = ()
 
-    def arrange(self, endings: frozenset[str], query: str, order: Order, down: bool, hidden: bool) -> tuple[Item, ...]:
+    def arrange(
+        self, endings: frozenset[str], query: str, order: Order, down: bool, hidden: bool, start: str = ""
+    ) -> tuple[Item, ...]:
         """The items, sorted and filtered; cached while nothing changes."""
-        arguments = (endings, query, order, down, hidden)
+        arguments = (endings, query, order, down, hidden, start)
         if not self._arguments or self._arguments[0] is not self.items or self._arguments[1:] != arguments:
-            self._shown = arrange_items(self.items, endings, query=query, order=order, down=down, hidden=hidden)
+            self._shown = arrange_items(
+                self.items, endings, query=query, order=order, down=down, hidden=hidden, start=start
+            )
             self._arguments = (self.items, *arguments)
         return self._shown
 

@@ -103,8 +103,12 @@ def is_path(text: str) -> bool:
     return text.startswith("~") or any(separator in text for separator in (os.sep, os.altsep) if separator)
 
 
+def last_name(text: str) -> str:
+    """What is typed behind the last separator of a path."""
+    text = text.strip().strip('"')
+    return text.replace(os.altsep or os.sep, os.sep).rpartition(os.sep)[2]
+
+
 def names_folder(text: str) -> bool:
     """Whether a typed path can only be a folder: nothing at all, `.`, `..`, `~`, or a separator at its end."""
-    text = text.strip().strip('"')
-    last = text.replace(os.altsep or os.sep, os.sep).rpartition(os.sep)[2]
-    return last in ("", ".", "..", "~")
+    return last_name(text) in ("", ".", "..", "~")

@@ -189,6 +189,32 @@ def test_a_typed_path_is_taken_as_a_path(desk: Desk, folder: Path, monkeypatch: 
     assert now.name == "look.json"
 
 
+def test_a_path_that_is_typed_shows_what_its_folder_has(desk: Desk, folder: Path) -> None:
+    (folder / "inner" / "look.json").write_text("{}")
+    now = browsing(desk)
+    for typed, listed in (
+        (f"{folder}/", ["inner", "a.json", "b.json"]),
+        (f"{folder}/IN", ["inner"]),
+        (f"{folder}/inner/", ["look.json"]),
+        (f"{folder}/inner/lo", ["look.json"]),
+        (f"{folder}/inner/x", []),
+    ):
+        now.search(typed)
+        assert names(now) == listed
+    now.search(f"{folder}/inner/lo")
+    names(now)
+    assert now.target == folder / "inner" / "look.json"
+    before = now.folder
+    now.search("")  # the folder of the dialog again
+    now.listing.wait()
+    assert now.listing.folder == now.folder == before
+    now = browsing(desk, saving=True, name="mine.json")
+    now.rename(f"{folder}/inner/")
+    assert names(now) == ["look.json"]
+    now.choose(0)
+    assert now.target == folder / "inner" / "look.json"
+
+
 def test_opening_takes_a_typed_path_too(desk: Desk, folder: Path) -> None:
     now = browsing(desk)
     for typed, file, shown in (
