@@ -290,5 +290,7 @@ def test_the_passes_of_the_viewer_are_cards_and_a_click_selects_their_nodes(gui)
         revision = ui.editor.passes.revision
         ui.session.apply(SetValue(Port("bloom", "radius"), 0.02))
         ui.until(lambda: ui.editor.passes.revision > revision)
+        ui.session.files.new()  # the viewer shows nothing now
+        ui.until(lambda: not ui.editor.passes.passes)
 
     gui(body, PRESET)

@@ -101,6 +101,7 @@ def test_a_range_is_rendered_and_played(gui, shot: Path) -> None:
         assert (export.state, export.failure, export.done) == ("done", "", 8)
         assert len(list(shot.parent.glob("comp.*.exr"))) == 8
         ui.until(lambda: "render exists" in ui.editor.places)
+        ui.wait(2)
         ui.click("render resume instead")
         ui.click("render")
         ended(ui, 2)

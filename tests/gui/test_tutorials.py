@@ -203,6 +203,15 @@ def test_the_card_hides_no_note_if_there_is_another_place() -> None:
     assert place_card(viewer, (320.0, 120.0), area, 1.0, [(0.0, 0.0, 1000.0, 800.0)]) == first, "nowhere is free"
 
 
+def test_the_card_hides_no_node_if_there_is_another_place() -> None:
+    title, area = (450.0, 540.0, 600.0, 564.0), (0.0, 0.0, 1366.0, 768.0)
+    note, node, other = (450.0, 450.0, 610.0, 490.0), (450.0, 540.0, 600.0, 690.0), (240.0, 540.0, 390.0, 690.0)
+    end = (660.0, 540.0, 780.0, 564.0)
+    assert place_card(title, (320.0, 120.0), area, 1.0) == (450.0, 578.0), "below"
+    x, y = place_card(title, (320.0, 120.0), area, 1.0, [note], [node, other, end])
+    assert (x, y) == (614.0, 578.0), "below, at the right of the node"
+
+
 def test_the_node_of_a_step_has_its_notes() -> None:
     places = {
         "box": (264.0, 0.0),
@@ -219,7 +228,7 @@ def test_the_node_of_a_step_has_its_notes() -> None:
 
 @pytest.mark.parametrize("lesson", list_cases(COURSE[3:5], [*COURSE[:3], *COURSE[5:]]), ids=lambda lesson: lesson.id)
 def test_notes_of_a_lesson_can_be_read_beside_its_task(gui, lesson) -> None:
-    """In a window of 1366x768 each step shows its node with the notes above it, in letters of 11 pixels."""
+    """In a window of 1366x768 each step shows its node with the notes above it, in letters of 13 pixels."""
 
     def body(ui: Ui) -> None:
         progress, canvas = ui.window._contexts.tutorials.progress, ui.editor.canvas

@@ -40,16 +40,15 @@ _PATTERN = "photos/*.jpg"
 
 
 def draw_form(context: RendersContext, form: RenderForm) -> None:
-    """Draw the choices of the form, and the files that would be written."""
+    """Draw the choices of the form."""
     _draw_files(context, form)
     _draw_frames(context, form)
     _draw_options(context, form)
-    imgui.dummy((0, 2 * ui_scale()))
+
+
+def draw_start(context: RendersContext, form: RenderForm, width: float) -> None:
+    """Draw the files that would be written, and the button that begins a render, or lets it wait."""
     _draw_consequences(context, form, form.targets(imgui.get_time()))
-
-
-def draw_start_button(context: RendersContext, form: RenderForm, width: float) -> None:
-    """Draw the button that begins a render, or lets it wait."""
     waits = bool(context.exports.unfinished)
     title = f"{icons.ICON_FA_FILM}  {translate('Add to the queue') if waits else translate('Render')}"
     is_ready = not form.targets(imgui.get_time()).fault

@@ -12,7 +12,7 @@ from ...language.translation import translate
 from ..theme.style import ui_scale
 from ..toolkit.words import draw_empty_panel
 from .form import RenderForm
-from .form_view import draw_form, draw_start_button
+from .form_view import draw_form, draw_start
 from .queue_view import RenderQueueView
 
 if TYPE_CHECKING:
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 _FLAT = imgui.ChildFlags_.nav_flattened.value
 """The keyboard walks through both parts as one."""
+_ROWS = 3
+"""The rows of the form that are seen at least, however low the panel is."""
 _FORM, _WIDE = 420.0, 760.0
 """The width of the form, and the panel width from which on the queue is beside it."""
 
@@ -32,6 +34,8 @@ class RendersPanel:
         self._forms: dict[Path | None, RenderForm] = {}
         """The form of each document."""
         self._queue = RenderQueueView(context)
+        self._foot = 0.0
+        """The height of what is below the form, which does not scroll: what a render would write is always seen."""
 
     def close(self) -> None:
         """Release textures."""
@@ -47,15 +51,20 @@ class RendersPanel:
         room, scale = imgui.get_content_region_avail(), ui_scale()
         if room.x < _WIDE * scale:
             draw_form(self._context, form)
-            draw_start_button(self._context, form, room.x)
+            draw_start(self._context, form, room.x)
             imgui.separator()
             self._queue.draw()
             return
         imgui.begin_group()
-        imgui.begin_child("form", ImVec2(_FORM * scale, room.y - imgui.get_frame_height_with_spacing()), _FLAT)
+        gap = imgui.get_style().item_spacing.y
+        height = max(room.y - self._foot - gap, _ROWS * imgui.get_frame_height_with_spacing())
+        imgui.begin_child("form", ImVec2(_FORM * scale, height), _FLAT)
         draw_form(self._context, form)
         imgui.end_child()
-        draw_start_button(self._context, form, _FORM * scale)
+        imgui.begin_child("start", ImVec2(_FORM * scale, 0.0), _FLAT | imgui.ChildFlags_.auto_resize_y.value)
+        draw_start(self._context, form, _FORM * scale)
+        imgui.end_child()
+        self._foot = imgui.get_item_rect_size().y
         imgui.end_group()
         imgui.same_line(0, 20 * scale)
         imgui.begin_child("queue", ImVec2(0, room.y), _FLAT)

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
 _WIDTH, _GAP, _MARGIN = 320.0, 14.0, 10.0
 _PADDING = 14.0, 10.0
-READABLE_ZOOM = 0.8
-"""The zoom at which notes of a graph are as large as the smallest texts of the editor: 11 pixels."""
+READABLE_ZOOM = 0.95
+"""The zoom at which notes of a graph are nearly as large as the texts of panels: 13 pixels."""
 
 NOTE_REACH = 130.0
 """How far above its node a note begins, at most, in units of the canvas."""
@@ -122,8 +122,8 @@ class Coach:
         wide = inner + 2 * _PADDING[0] * scale
         high = imgui.calc_text_size(sentence, False, inner).y + 2 * _PADDING[1] * scale + imgui.get_frame_height()
         high += 1.2 * SMALL * scale + 3 * imgui.get_style().item_spacing.y + 2.0 * scale
-        notes = [place for name, place in progress.widgets.items() if name.startswith("title comments.")]
-        imgui.set_next_window_pos(place_card(rect, (wide, high), _find_area(), scale, notes))
+        notes, nodes = _list_seen(progress.widgets, "title comments."), _list_seen(progress.widgets, "node ")
+        imgui.set_next_window_pos(place_card(rect, (wide, high), _find_area(), scale, notes, nodes))
         imgui.set_next_window_size(ImVec2(wide, high))
         imgui.push_style_color(imgui.Col_.border, u32(self._context.palette.accent))
         imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(_PADDING[0] * scale, _PADDING[1] * scale))
@@ -218,13 +218,25 @@ def _overlaps(first: Rect, second: Rect) -> bool:
     return first[0] < second[2] and second[0] < first[2] and first[1] < second[3] and second[1] < first[3]
 
 
+def _list_seen(widgets: Mapping[str, Rect], start: str) -> list[Rect]:
+    """What is seen in the graph of the widgets whose names begin like that."""
+    left, top, right, bottom = widgets.get(PanelTitle.GRAPH, (0.0, 0.0, 0.0, 0.0))
+    places = [place for name, place in widgets.items() if name.startswith(start)]
+    return [(max(x0, left), max(y0, top), min(x1, right), min(y1, bottom)) for x0, y0, x1, y1 in places]
+
+
 def place_card(
-    rect: Rect | None, size: tuple[float, float], area: Rect, scale: float, notes: Sequence[Rect] = ()
+    rect: Rect | None,
+    size: tuple[float, float],
+    area: Rect,
+    scale: float,
+    notes: Sequence[Rect] = (),
+    nodes: Sequence[Rect] = (),
 ) -> tuple[float, float]:
     """Where the card goes: beside its widget, so that it hides nothing of it; into a widget as large as a panel.
 
-    Below comes first, as a reader looks there next; then above, at the right and at the left. A place that hides none
-    of the notes is better.
+    Below comes first, as a reader looks there next; then above, at the right, at the left, and at the corners. A place
+    that hides less of the notes is better, and of those one that hides less of the nodes.
     """
     width, height = size
     gap, margin = _GAP * scale, _MARGIN * scale
@@ -233,14 +245,25 @@ def place_card(
         return high
     x, y = min(max(rect[0], low[0]), high[0]), min(max(rect[1], low[1]), high[1])
     end = min(max(rect[2] - width, low[0]), high[0])
-    places = [(left, top) for left in (x, end) for top in (rect[3] + gap, rect[1] - gap - height)]
-    places += [(rect[2] + gap, y), (rect[0] - gap - width, y)]
+    right, left, below, above = rect[2] + gap, rect[0] - gap - width, rect[3] + gap, rect[1] - gap - height
+    places = [(place, top) for place in (x, end) for top in (below, above)]
+    places += [(right, y), (left, y), (right, below), (right, above), (left, below), (left, above)]
     inside = [place for place in places if low[0] <= place[0] <= high[0] and low[1] <= place[1] <= high[1]]
-    cards = [(left, top, left + width, top + height) for left, top in inside]
-    free = [card[:2] for card in cards if not any(_overlaps(card, note) for note in notes)]
-    if free or inside:
-        return (free or inside)[0]
+
+    def measure_hidden(place: tuple[float, float]) -> tuple[float, float]:
+        card = *place, place[0] + width, place[1] + height
+        return sum(_measure_shared(card, note) for note in notes), sum(_measure_shared(card, node) for node in nodes)
+
+    if inside:
+        return min(inside, key=measure_hidden)
     return min(max(rect[2] - width - margin, low[0]), high[0]), y + margin
+
+
+def _measure_shared(first: Rect, second: Rect) -> float:
+    """The area that two rectangles share, in whole pixels."""
+    across = min(first[2], second[2]) - max(first[0], second[0])
+    down = min(first[3], second[3]) - max(first[1], second[1])
+    return float(round(across * down)) if across > 0.0 and down > 0.0 else 0.0
 
 
 def _find_area() -> Rect:

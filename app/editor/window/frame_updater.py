@@ -145,7 +145,10 @@ class FrameUpdater:
         """Run the next pass for the panel of passes, if somebody looks at it; True while there are more."""
         editor, session = self._editor, self._contexts.viewer.session
         passes, port = editor.passes, ports.get(A)
-        if not passes.is_shown or port is None or editor.timeline.playing or editor.preview.busy:
+        if port is None:
+            passes.clear()
+            return False
+        if not passes.is_shown or editor.timeline.playing or editor.preview.busy:
             return False
         passes.is_shown = False
         passes.want(PreviewRequest(session.root, {A: port}, dict(session.bindings), scale, session.time.frame, None))
