@@ -7,6 +7,7 @@ import pytest
 from gui_driver import Ui
 from halation import presets
 from halation.authoring.log import TOAST_SECONDS
+from halation.editor.shared.window_commands import PanelTitle
 from imgui_bundle import imgui
 
 
@@ -81,5 +82,44 @@ def test_the_keyboard_walks_through_a_panel(gui, panel: str, count: int) -> None
             reached.add(navigation.nav_id)
         assert len(reached) == count and 0 not in reached
         assert not imgui.is_popup_open("", int(imgui.PopupFlags_.any_popup))
+
+    gui(body, presets.paths()[0], size=(1366, 768))
+
+
+def test_the_graph_and_the_bars_of_panels_are_reached_by_keyboard(gui) -> None:
+    """Ctrl+Tab leads to panels, wherever the pointer rests; arrows with Alt lead through the graph."""
+
+    def lead_to(ui: Ui, panel: PanelTitle) -> None:
+        for presses in range(1, 14):  # each time further back in the order in which windows had the focus
+            with ui.held("Ctrl"):
+                for _ in range(presses):
+                    ui.ctx.key_press(int(imgui.Key.tab))
+                    ui.wait(2)
+            ui.wait(3)
+            if ui.editor.interface.walked_panel == panel:
+                return
+        raise AssertionError(f"no way leads to {panel}")
+
+    def body(ui: Ui) -> None:
+        ui.settled()
+        ui.move("Inspector", (0.5, 0.98))
+        lead_to(ui, PanelTitle.GRAPH)
+        assert ui.editor.scope == "graph"
+        ui.keys("Alt+LeftArrow")
+        first = ui.session.active
+        assert first
+        ui.keys("Alt+RightArrow")
+        ui.keys("Alt+LeftArrow")
+        assert ui.session.active and ui.session.selection == {ui.session.active}
+        ui.keys("Ctrl+Shift+RightArrow")
+        assert len(ui.session.selection) == 2
+        ui.shot("graph_walked.png")
+        lead_to(ui, PanelTitle.VIEWER)
+        ui.keys("Tab")
+        context = imgui.get_current_context()
+        assert context.nav_cursor_visible and context.nav_window.root_window.name.startswith("Viewer")
+        assert not imgui.is_popup_open("", int(imgui.PopupFlags_.any_popup))
+        ui.move("Viewer", (0.5, 0.5))
+        assert ui.editor.interface.walked_panel is None
 
     gui(body, presets.paths()[0], size=(1366, 768))

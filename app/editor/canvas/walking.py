@@ -69,7 +69,7 @@ def _make_walk(way: Way, adds: bool) -> Action[CanvasContext]:
         _TITLES[way][adds],
         lambda context: _walk(context, way, adds),
         "Edit/Select",
-        f"{'Shift+Alt' if adds else 'Alt'}+{way.title()}Arrow",
+        f"{'Ctrl+Shift' if adds else 'Alt'}+{way.title()}Arrow",
         "graph",
         separated=way == "left",
         repeats=True,

@@ -121,6 +121,7 @@ ANIMATION: tuple[Action[CurvesContext], ...] = (
         doc="A value that loses its last key keeps its current value.",
     ),
     Action("keys.all", "Select All Keys", commands.choose_all, shortcut="Ctrl+A", scope="animation"),
+    Action("keys.select_here", "Select Keys at This Frame", commands.choose_here, shortcut="Ctrl+K", scope="animation"),
     Action("keys.none", "Select No Keys", commands.choose_none, shortcut="Ctrl+Shift+A", scope="animation"),
     Action(
         "keys.earlier",

@@ -59,6 +59,13 @@ def choose_all(context: CurvesContext) -> None:
     state.choose(frozenset(spot for row in rows if row.port and row.keys for spot in _list_visible_spots(context, row)))
 
 
+def choose_here(context: CurvesContext) -> None:
+    """Select the keys at the current frame, of every value that has a row."""
+    choose_all(context)
+    frame = context.session.time.frame
+    context.curves.choose(frozenset(spot for spot in context.curves.spots if spot[1] == frame))
+
+
 def choose_none(context: CurvesContext) -> None:
     """Deselect all keys."""
     context.curves.spots = frozenset()

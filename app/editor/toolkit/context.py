@@ -20,7 +20,9 @@ class Interface(Struct):
     places: dict[str, Rect] = field(default_factory=dict[str, Rect])
     """Where widgets were drawn last, by name: for tests and hints."""
     pointed_panel: PanelTitle | None = None
-    """The panel under the pointer."""
+    """The panel that keys go to: the one under the pointer, or the one that Ctrl+Tab led to since it moved."""
+    walked_panel: PanelTitle | None = None
+    """The panel that Ctrl+Tab led to, until the mouse moves or is pressed."""
     dragging: bool = False
     """True while the user drags a value: pictures may be coarse until the mouse button is released."""
 

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from imgui_bundle import imgui
 
+from ..shared.action import Scope
 from ..shared.window_commands import PanelTitle
 from ..toolkit.keys import chord
 from .editor import Editor
 
 
 def note_scope(editor: Editor) -> None:
-    """Keys go to the panel that the mouse was over last; to be called between two frames."""
-    if editor.canvas.hovered or editor.viewer.hovered or editor.curves.hovered:
+    """Keys go to the panel that the mouse was over last, or Ctrl+Tab led to; to be called between two frames."""
+    if (walked := editor.interface.walked_panel) is not None:
+        editor.scope = _SCOPES.get(walked, editor.scope)
+    elif editor.canvas.hovered or editor.viewer.hovered or editor.curves.hovered:
         editor.scope = "graph" if editor.canvas.hovered else "viewer" if editor.viewer.hovered else "animation"
 
 
@@ -36,8 +41,8 @@ def run_shortcuts(editor: Editor) -> None:
 def _is_pressed(editor: Editor, text: str, repeats: bool) -> bool:
     keys = chord(text)
     key = imgui.Key(keys & ~_MODIFIERS)
-    if key == imgui.Key.tab and editor.interface.pointed_panel not in _WITH_SCOPES:
-        return False  # it walks through the fields of the panel under the pointer
+    if key == imgui.Key.tab and _walks(editor):
+        return False
     if key not in _TAKEN:
         return imgui.shortcut(keys, _ROUTE | _REPEAT if repeats else _ROUTE)
     if int(imgui.get_io().key_mods) != keys & _MODIFIERS:
@@ -47,14 +52,31 @@ def _is_pressed(editor: Editor, text: str, repeats: bool) -> bool:
     return imgui.is_key_pressed(key, repeats)
 
 
+def _walks(editor: Editor) -> bool:
+    """True if Tab walks through the fields of a panel: of any that has no other use for it, and of those that the
+    keyboard led to. Over the graph it always opens the search.
+    """
+    walked = editor.interface.walked_panel
+    if walked is not None:
+        return walked != PanelTitle.GRAPH
+    return editor.interface.pointed_panel not in _WITH_SCOPES
+
+
 _ROUTE = int(imgui.InputFlags_.route_global)
 _REPEAT = int(imgui.InputFlags_.repeat)
 _ANY_POPUP = int(imgui.PopupFlags_.any_popup)
 _MODIFIERS = sum(
     int(item) for item in (imgui.Key.mod_ctrl, imgui.Key.mod_shift, imgui.Key.mod_alt, imgui.Key.mod_super)
 )
-_WITH_SCOPES = (None, PanelTitle.GRAPH, PanelTitle.VIEWER, PanelTitle.ANIMATION)
-"""Panels with shortcuts of their own, and where there is no panel."""
+_SCOPES: Mapping[PanelTitle, Scope] = {
+    PanelTitle.GRAPH: "graph",
+    PanelTitle.VIEWER: "viewer",
+    PanelTitle.ANIMATION: "animation",
+}
+"""Panels with shortcuts of their own."""
+
+_WITH_SCOPES = (None, *_SCOPES)
+"""These panels, and where there is no panel."""
 
 _TAKEN = (imgui.Key.space, imgui.Key.left_arrow, imgui.Key.right_arrow, imgui.Key.up_arrow, imgui.Key.down_arrow)
 """Keys that the library would use for buttons, if actions did not take them."""

@@ -38,6 +38,7 @@ from .resting import GRACE, FrameWaker, Settling, choose_idle_rate
 from .screenshot import save_screenshot
 from .shortcuts import note_scope, run_shortcuts
 from .status import draw_status
+from .walked_panel import WalkedPanel
 
 SIZE = (1600, 1000)
 _ASSETS = str(Path(__file__).parents[1] / "assets")
@@ -94,7 +95,7 @@ class Window:
         self._appearance = Appearance()
         self._layout = LAYOUTS["composite"]
         self.params = self._make_params(version, size)
-        self._menu_bar = MenuBar()
+        self._menu_bar, self._walked_panel = MenuBar(), WalkedPanel()
         self._full_screen = FullScreen(self.params)
         self.frames = 0
         self.fault: Exception | None = None
@@ -213,7 +214,8 @@ class Window:
         if self._appearance.follow(self.editor):
             self._painter.redraw_all()
         self._docks.follow_window()
-        editor.interface.pointed_panel = find_pointed_panel(editor.places)
+        editor.interface.walked_panel = self._walked_panel.follow()
+        editor.interface.pointed_panel = editor.interface.walked_panel or find_pointed_panel(editor.places)
         if self._filling is None:
             self._front = frozenset(title for title in PanelTitle if title in editor.places)
         if self._front_again and self.frames >= self._front_at:
