@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
-from halation.fit.likeness import LookLikeness, PixelLikeness
+from halation.fit.likeness import LookLikeness, PixelLikeness, _measure_bands  # pyright: ignore
 from halation.fit.results import measure_curvatures
+from halation.fit.search import FitSearch
 from halation.media.comparison.color_difference import to_lab
-from scipy import stats
+from scipy import fft, stats
 
 RANDOM = np.random.default_rng(3)
 
@@ -62,3 +67,43 @@ def test_curvature_is_what_the_other_numbers_cannot_make_up_for():
     np.testing.assert_allclose(measure_curvatures(slopes), expected, rtol=1e-9)
     slopes[:, 4] = slopes[:, 0] + slopes[:, 1]
     assert (measure_curvatures(slopes)[[0, 1, 4]] < 1e-9).all() and (measure_curvatures(slopes)[2:4] > 1.0).all()
+
+
+@pytest.mark.parametrize("size", [(16, 22), (16, 21), (9, 8), (11, 7)])
+def test_bands_are_those_of_the_whole_spectrum(size: tuple[int, int]) -> None:
+    """Against both halves of the spectrum as scipy has it: waves to the left and to the right count alike."""
+    lightness = RANDOM.uniform(20, 80, size)
+    window = np.outer(*(np.hanning(length + 2)[1:-1] for length in size))
+    flat = lightness - np.average(lightness, weights=window)
+    power = np.abs(fft.fft2(flat * window)) ** 2 / np.sum(window**2) / lightness.size
+    frequency = np.hypot(fft.fftfreq(size[0])[:, None], fft.fftfreq(size[1])[None, :])
+    bands, floor = _measure_bands(lightness), _measure_bands(np.zeros(size))
+    # A wave of two pixels ends the first band, to which shorter ones between rows and columns belong too.
+    edges = 0.5 * 2.0 ** (-np.arange(bands.size + 1) / 2.0)
+    for number, (high, low) in enumerate(pairwise(edges)):
+        inside = (frequency > low * (1 + 1e-9)) & ((frequency <= high * (1 + 1e-9)) | (number == 0))
+        assert bands[number] - floor[number] == pytest.approx(np.sqrt(power[inside].sum()), rel=1e-6)
+
+
+@pytest.mark.parametrize("point", [(0.5, 0.25, 0.5), (0.0, 0.999999, 1.0), (1.0, 0.0, 0.0)])
+def test_slopes_are_those_of_a_polynomial(point: tuple[float, ...]) -> None:
+    """Inside the ranges, also at their ends; one number is whole, with four steps."""
+    seen: list[np.ndarray] = []
+
+    def measure(at: np.ndarray) -> np.ndarray:
+        seen.append(np.array(at))
+        return np.array([3.0 * at[0] - 2.0 * at[1], at[0] * at[1] + 5.0 * at[2]])
+
+    numbers = [SimpleNamespace(low=0.0, high=1.0, is_whole=False)] * 2 + [
+        SimpleNamespace(low=2.0, high=6.0, is_whole=True)
+    ]
+    search: Any = SimpleNamespace(space=SimpleNamespace(numbers=numbers), measure=measure, slopes=None)
+    here = np.array(point)
+    expected = np.array([[3.0, -2.0, 0.0], [here[1], here[0], 5.0]])
+    np.testing.assert_allclose(FitSearch.measure_central_slopes(search, here), expected, atol=1e-6)
+    free = np.array([True, False, True])
+    np.testing.assert_allclose(FitSearch.measure_slopes(search, here, free), expected[:, free], atol=1e-6)
+    np.testing.assert_allclose(search.slopes[:, 1], 0.0)
+    assert all((at >= 0.0).all() and (at <= 1.0).all() for at in seen)
+    wholes = {float(at[2]) for at in seen[:6]}
+    assert wholes == {here[2], max(here[2] - 0.25, 0.0), min(here[2] + 0.25, 1.0)}
