@@ -290,6 +290,7 @@ def test_a_new_shape_has_the_next_number(context, monkeypatch, outline: SplineOu
         SplineOutline(outline.points_port, name, (), AFFINE, PICTURE, False) for name in ("shape_3", "shape_7", "leaf")
     ]
     monkeypatch.setattr(spline_edits, "list_outlines", lambda context: names)
+    monkeypatch.setattr(spline_edits, "_find_replaced", lambda context: None)
     context.viewer.pen.pending = POINTS[0]
     spline_edits.lift_pen(context)
     command = context.commands[-1]
@@ -298,3 +299,15 @@ def test_a_new_shape_has_the_next_number(context, monkeypatch, outline: SplineOu
     }
     assert context.viewer.pen.selection == ("roto.shapes.shape_8.points", frozenset({0}))
     assert context.items == {"roto.shapes": "shape_8"}
+
+
+def test_the_first_point_takes_the_place_of_the_shape_that_a_list_begins_with(
+    context, monkeypatch, outline: SplineOutline
+) -> None:
+    monkeypatch.setattr(spline_edits, "_find_replaced", lambda context: outline)
+    context.viewer.pen.pending = POINTS[2]
+    spline_edits.lift_pen(context)
+    (command,) = context.commands
+    assert isinstance(command, ChangePoints) and command.origins == (None,)
+    assert [*command.change(POINTS)] == [POINTS[2]] and context.viewer.pen.shape == str(outline.points_port)
+    assert context.viewer.pen.selection == (str(outline.points_port), {0})
