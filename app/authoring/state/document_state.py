@@ -12,6 +12,7 @@ from halation.nodes import Node, catalogue
 
 from ...errors import GraphError
 from ...graph import Graph, Problem
+from ...graph.rules import UNFED_OUTPUT
 from ...language.translation import translate
 from ...resources.sandbox import Sandbox
 from ..edits import elements, folding, layout
@@ -129,11 +130,15 @@ class DocumentState:
 
     @property
     def problems(self) -> Mapping[ElementId, tuple[Problem, ...]]:
-        """What is wrong with `graph`, by element; what belongs to none is under the empty id."""
+        """What is wrong with `graph`, by element; what belongs to none is under the empty id.
+
+        That nothing feeds the output of a graph is no mistake before it has a node.
+        """
         name, graph = ("problems of a group", self.graph) if self.place else ("problems", self.root)
         problems = find_problems(self._memo, name, graph, self.types)
+        shown = problems if self.graph.nodes else tuple(one for one in problems if one.rule != UNFED_OUTPUT)
         return self._memo.get(
-            "problems by element", (problems, self.elements), lambda: sort_problems(problems, self.elements)
+            "problems by element", (problems, self.elements), lambda: sort_problems(shown, self.elements)
         )
 
     @property

@@ -11,7 +11,8 @@ from imgui_bundle import imgui
 
 from ...authoring.edits.coding import LANGUAGES
 from ...authoring.edits.element_id import ElementId
-from ...graph import Group, Item
+from ...graph import Group, Item, Problem
+from ...graph.rules import UNFINISHED_NODE, UNLINKED_INPUT
 from ...language.translation import translate
 from ..fields.fields import Fields
 from ..fields.text_field import text_field
@@ -84,8 +85,14 @@ def draw_faults(rows: Rows, element: ElementId) -> None:
         color = rows.palette.error if problem.severity == "error" else rows.palette.warning
         rows.note(problem.sentence, color, icon=icons.ICON_FA_TRIANGLE_EXCLAMATION)
     rendered = context.preview.faults.get(path, "")
-    if rendered and all(rendered != problem.sentence for problem in problems):
+    if rendered and not any(_tells(problem, rendered) for problem in problems):
         rows.note(rendered, rows.palette.error, icon=icons.ICON_FA_TRIANGLE_EXCLAMATION)
+
+
+def _tells(problem: Problem, rendered: str) -> bool:
+    """True if a problem of the graph says what an error while rendering says: itself, or which link is missing."""
+    is_link = problem.rule in (UNLINKED_INPUT, UNFINISHED_NODE) and f"'{problem.socket}'" in rendered
+    return is_link or rendered == problem.sentence
 
 
 def title_of(item: Item) -> str:

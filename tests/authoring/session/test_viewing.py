@@ -148,3 +148,13 @@ def test_another_document_forgets_what_was_viewed(session):
     session.files.new()
     session.apply(ReplaceGraph("Start", chain(3)))
     assert session.views.find_port() == port("outputs.image")
+
+
+def test_a_new_document_has_no_error_until_it_has_a_node() -> None:
+    session = Session(sandbox=UNRESTRICTED)
+    assert not session.problems
+    session.apply(AddNode("checker"))
+    (problem,) = session.problems[ElementId.of("output", "image")]
+    assert problem.severity == "error" and "nothing feeds" in problem.sentence
+    session.undo()
+    assert not session.problems
