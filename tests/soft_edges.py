@@ -65,15 +65,17 @@ def _soften(sides: tuple[np.ndarray, ...], places: np.ndarray, inside: np.ndarra
     start, way, width, after = sides
     wide = np.maximum(width, 1.0)
     growth = np.maximum(after, 1.0) - wide
-    rest = places[:, None] - start
-    run, square = (rest * way).sum(axis=2), (rest * rest).sum(axis=2)
-    slope = (way * way).sum(axis=1) * wide + growth * run
-    t = np.where(
-        slope > 0.0, np.clip((growth * square + run * wide) / np.maximum(slope, 1e-30), 0.0, 1.0), growth > 0.0
-    )
-    away = np.hypot(*np.moveaxis(rest - t[..., None] * way, -1, 0))
-    nearest = np.argmin(away / (wide + t * growth), axis=1)[:, None]
-    away, t = (np.take_along_axis(each, nearest, axis=1)[:, 0] for each in (away, t))
-    feather = width[nearest[:, 0]] + (after - width)[nearest[:, 0]] * t
-    place = np.clip(0.5 + np.where(inside, away, -away) / np.maximum(feather, 1e-9), 0.0, 1.0)
+    (x, y), (along, down) = (places[:, None] - start).transpose(2, 0, 1), way.T
+    run, length = x * along + y * down, np.maximum((way * way).sum(axis=1), 1e-30)
+    if growth.any():
+        slope = length * wide + growth * run
+        least = np.clip((growth * (x * x + y * y) + run * wide) / np.maximum(slope, 1e-30), 0.0, 1.0)
+        t = np.where(slope > 0.0, least, growth > 0.0)
+    else:
+        t = np.clip(run / length, 0.0, 1.0)
+    away = np.hypot(x - t * along, y - t * down)
+    nearest = np.argmin(away / (wide + t * growth), axis=1)
+    at = np.arange(len(places)), nearest
+    feather = width[nearest] + (after - width)[nearest] * t[at]
+    place = np.clip(0.5 + np.where(inside, away[at], -away[at]) / np.maximum(feather, 1e-9), 0.0, 1.0)
     return place * place * (3.0 - 2.0 * place)

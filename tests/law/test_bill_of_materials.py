@@ -14,7 +14,10 @@ from application.build import SystemPart, list_system_parts
 from bill_of_materials import check_bill, write_application_bill, write_environment_bill
 from release import write_notice
 
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="only Linux keeps to it")
+pytestmark = [
+    pytest.mark.skipif(sys.platform != "linux", reason="only Linux keeps to it"),
+    pytest.mark.nightly,  # each release writes and checks its bills itself; to check one takes 20 seconds
+]
 
 
 @pytest.fixture(scope="module")

@@ -80,6 +80,7 @@ def test_commands_of_the_table_select_tests(tree: Path, pytestconfig: pytest.Con
     assert any("-k" in row for row in rows)
 
 
+@pytest.mark.nightly  # by day they run in the tree itself, and test_the_new_node_passes_the_tests_of_every_node here
 def test_nothing_else_notices_it(tree: Path) -> None:
     result = run_in_tree(tree, "-m", "pytest", "-q", "-p", "no:cacheprovider", *ALL_NODES)
     assert result.returncode == 0, result.stdout

@@ -30,6 +30,7 @@ from halation.renderer import Renderer, RenderRequest, open_device
 from halation.resources.sandbox import UNRESTRICTED
 from msgspec.structs import replace as change
 from polygons import measure_coverage, measure_distance
+from selection import list_cases
 from soft_edges import measure_soft_coverage
 
 WIDTH, HEIGHT = 101, 75
@@ -103,7 +104,7 @@ def test_a_narrow_soft_edge_is_the_mean_of_a_smooth_step(run, name, feather):
     np.testing.assert_allclose(mask, expected, atol=2e-3)
 
 
-@pytest.mark.parametrize(("feather", "each"), [(0.2, 0.0), (0.0, 0.2), (0.1, 0.1)])
+@pytest.mark.parametrize(("feather", "each"), list_cases([(0.2, 0.0), (0.0, 0.2)], [(0.1, 0.1)]))
 def test_few_chords_of_a_soft_edge_are_as_exact_as_hard_coverage(run, feather, each):
     """Handles across the way: most of each curve is passed in its middle, and its ends are sharp bends."""
     rows = np.reshape(wave(60, 7), (60, 7))
@@ -123,7 +124,7 @@ def test_a_feather_can_differ_from_point_to_point(run):
     np.testing.assert_allclose(mask[50, :50], np.arange(50) >= 20, atol=1e-5)
 
 
-@pytest.mark.parametrize(("narrow", "wide"), [(0.05, 0.6), (0.1, 0.4), (0.2, 0.21)])
+@pytest.mark.parametrize(("narrow", "wide"), list_cases([(0.05, 0.6)], [(0.1, 0.4), (0.2, 0.21)]))
 def test_feathers_that_differ_have_no_steps(run, narrow, wide):
     """The point of the outline counts whose distance is the least part of its feather."""
     rows = np.reshape(wave(12, 3), (12, 7))
