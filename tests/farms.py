@@ -72,6 +72,14 @@ class Farm:
         self.workers.append(start_dask([*command, *words], folder, {"LP_NUM_THREADS": "1", **variables}))
         return self.workers[-1]
 
+    def wait_for_workers(self) -> None:
+        """Wait until the scheduler knows all workers: a job ends if none of those that it finds can render."""
+        limit = time.monotonic() + 120.0
+        for log in (folder / "worker.log" for folder in self.folder.glob("worker*")):
+            while not log.is_file() or "Registered to" not in log.read_text("utf-8"):
+                assert time.monotonic() < limit, f"{log}: the worker does not find its scheduler"
+                time.sleep(0.1)
+
     def stop(self) -> None:
         """End all processes."""
         for group in (*self.workers, self.scheduler):

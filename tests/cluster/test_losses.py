@@ -134,6 +134,7 @@ def test_machines_that_cannot_render_the_same_are_refused_with_the_reason(halati
     for name, text in (("old", OLD), ("blind", BLIND), ("full", FULL)):
         farm.start_worker(**customize(tmp_path / name, text))
     farm.start_worker()
+    farm.wait_for_workers()
     ending = halation(*render_words(farm))
     assert ending.code == 0, ending.err
     lines = [line for line in ending.err.splitlines() if line.startswith("worker tcp://")]
@@ -161,11 +162,13 @@ def test_a_worker_with_another_plug_in_or_other_glsl_is_refused_with_both_versio
     farm.start_worker(PYTHONPATH=str(sites[1]))
     glsl = customize(tmp_path / "glsl", OTHER_GLSL)["PYTHONPATH"]
     farm.start_worker(PYTHONPATH=f"{glsl}{os.pathsep}{sites[0]}", OTHER_SHADERS=str(shaders))
+    farm.wait_for_workers()
     ending = halation(*render_words(farm))
     assert ending.code == 1 and not list_written(shot)
     assert "it has the plug-in acme 2.0, and the job was sent by 1.0" in ending.err, ending.err
     assert re.search(r"it has node type exposure [0-9a-f]{12}, and the job was sent by [0-9a-f]{12}", ending.err)
     farm.start_worker(PYTHONPATH=str(sites[0]))
+    farm.wait_for_workers()
     ending = halation(*render_words(farm))
     assert ending.code == 0, ending.err
     check_whole(halation, shot)

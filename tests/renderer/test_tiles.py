@@ -171,7 +171,7 @@ def test_what_looks_far_goes_beyond_the_device(name):
         if item.kind is not Kind.CAMERA
     }
     graph = graph_of(node, given | cameras(node))
-    examine(graph, Request({}, outside.bind(graph, given), (24_000, 20_000)), outside)
+    examine(graph, Request({}, outside.bind(graph, given), (17_000, 17_000)), outside)
 
 
 def refused(node) -> str:
@@ -184,7 +184,7 @@ def refused(node) -> str:
     }
     graph = graph_of(node, given | cameras(node))
     try:
-        examine(graph, Request({}, outside.bind(graph, given), (24_000, 20_000)), outside)
+        examine(graph, Request({}, outside.bind(graph, given), (17_000, 17_000)), outside)
     except DeviceError as error:
         return str(error)
     return ""
