@@ -26,7 +26,7 @@ _FIRST_PARTS = tuple((room,) for room in SLOW_ROOMS)
 
 SLOW = 0.3
 """Seconds of processor time above which a test is slow, all its cases together. The tests of the other
-rooms that are not slow take 100 s together, those that are take 670 s, measured with Mesa 22.3 and its cache warm."""
+rooms that are not slow take 110 s together, those that are take 760 s, measured with Mesa 22.3 and its cache warm."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
