@@ -111,9 +111,10 @@ def _prepare(fill: OutlineFill, grid: TileGrid) -> _SortedOutline:
     cells = sort_into_cells(chords.ends if is_soft else keep_edges(flatten(curves)).ends, grid)
     level = np.minimum(np.abs(cells.backdrops[::_STRIPS, :, 0]), 1.0)
     if is_hard:
-        nothing = np.zeros(cells.are_crossed.shape, np.intp)
+        is_crossed = cells.are_crossed
+        nothing = np.zeros(is_crossed.shape, np.intp)
         near = NearChords(np.zeros(0, np.intp), nothing, nothing)
-        return _SortedOutline(fill, cells, np.zeros((0, 4)), near, np.zeros(nothing.shape), cells.are_crossed, level)
+        return _SortedOutline(fill, cells, np.zeros((0, 4)), near, np.zeros(nothing.shape), is_crossed, level)
     widths = np.maximum(fill.feather + chords.feathers, 1.0) if curves.feathers.any() else None
     near = find_candidates(chords.ends, 0.5 * feather + fill.growth + 1.0, grid, widths)
     pairs = np.stack([chords.ends, np.pad(chords.feathers, ((0, 0), (0, 2)))], axis=1).reshape(-1, 4)

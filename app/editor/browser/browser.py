@@ -112,9 +112,8 @@ class FileBrowser:
         buttons = width_of_buttons(*button_icons) + imgui.get_style().item_spacing.x
         imgui.set_next_item_width(imgui.get_content_region_avail().x - buttons)
         completes = partial(self._complete, self._path, browsing)
-        imgui.push_item_flag(
-            int(imgui.ItemFlags_.no_tab_stop), True
-        )  # Tab completes in it, and the other one takes paths
+        # Tab completes in it, and the field below the files takes paths too.
+        imgui.push_item_flag(int(imgui.ItemFlags_.no_tab_stop), True)
         entered, self._path = imgui.input_text("##path", self._path, _ENTERED | _COMPLETES, completes)
         imgui.pop_item_flag()
         record(self._context, "path field")

@@ -19,7 +19,7 @@ from ...media.pictures.file_endings import list_readable_endings
 from ...resources.user_folders import first_folder
 from ..shared.dialogs import Browse
 from .listing import Item, Listing, Order
-from .places import Place, complete_path, is_path, last_name, names_folder, places
+from .places import Place, complete_path, is_path, last_name, names_folder, places, split_path
 
 if TYPE_CHECKING:
     from .context import BrowserContext
@@ -98,7 +98,7 @@ class Browsing(Struct):
         """List the folder of a path that is being typed; of a name, that of the dialog."""
         folder = self.folder
         if is_path(text):
-            folder = complete_path(text.strip().strip('"').removesuffix(last_name(text)), self.folder)
+            folder = complete_path(split_path(text)[0], self.folder)
         if folder != self.listing.folder:
             self.listing.show(folder)
 

@@ -78,8 +78,7 @@ def complete_name(text: str, folder: Path, endings: Collection[str] = ()) -> str
     Files count if their name ends in one of `endings` (none: all). Letter case only matters where several names differ
     in nothing else.
     """
-    cut = max(text.rfind(separator) for separator in (os.sep, os.altsep or os.sep)) + 1
-    head, stem = text[:cut], text[cut:]
+    head, stem = split_path(text)
     try:
         with os.scandir(complete_path(head, folder)) as entries:
             names = [entry.name + os.sep if entry.is_dir() else entry.name for entry in entries]
@@ -103,10 +102,15 @@ def is_path(text: str) -> bool:
     return text.startswith("~") or any(separator in text for separator in (os.sep, os.altsep) if separator)
 
 
+def split_path(text: str) -> tuple[str, str]:
+    """A typed path up to its last separator and with it, and what is typed behind."""
+    cut = max(text.rfind(separator) for separator in (os.sep, os.altsep or os.sep)) + 1
+    return text[:cut], text[cut:]
+
+
 def last_name(text: str) -> str:
     """What is typed behind the last separator of a path."""
-    text = text.strip().strip('"')
-    return text.replace(os.altsep or os.sep, os.sep).rpartition(os.sep)[2]
+    return split_path(text.strip().strip('"'))[1]
 
 
 def names_folder(text: str) -> bool:

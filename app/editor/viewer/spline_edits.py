@@ -332,7 +332,9 @@ def lift_pen(context: ViewerContext) -> None:
         _change_points(context, replaced, lambda _: (point,), mark("Draw {shape}"), (None,))
         pen.shape = str(replaced.points_port)
         select_points(context, replaced, (0,))
-    if replaced is not None or port is None:
+        return
+
+    if port is None:
         return
 
     def add() -> None:

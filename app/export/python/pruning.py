@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Mapping
-from functools import cache
+from functools import lru_cache
 
 from msgspec import Struct, field
 from msgspec.structs import replace
@@ -91,7 +91,7 @@ class _Source(Struct, frozen=True):
     """Its tables and blocks, those outside before those inside."""
 
 
-@cache
+@lru_cache(maxsize=1024)
 def _read_source(text: str) -> _Source:
     """Read a definition. Most are the same in all scripts, and each is asked for in all rounds."""
     tree = ast.parse(text)
