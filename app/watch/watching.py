@@ -25,7 +25,6 @@ from typing import Literal
 from halation.nodes import Node
 from msgspec import Struct, field
 from msgspec.structs import replace
-from watchfiles import watch
 
 from ..errors import InputError
 from ..graph import Graph, Group, Port
@@ -199,6 +198,8 @@ class FileWatcher:
 
     def _listen(self, folders: frozenset[tuple[Path, int]]) -> None:
         """Compare whenever something happens in the folders, until others are wanted. Raises OSError, RuntimeError."""
+        from watchfiles import watch  # in this thread: an editor that starts need not wait for it
+
         events = watch(
             *(path for path, _ in folders),
             watch_filter=None,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import platform
-from importlib import metadata
 from typing import TYPE_CHECKING
 
 from imgui_bundle import icons_fontawesome_6 as icons
@@ -68,6 +67,8 @@ class AboutDialog:
 
 def list_versions() -> list[tuple[str, str]]:
     """Names and versions of Halation, of the system and of the libraries that it stands on."""
+    from importlib import metadata  # a fiftieth of the start of the editor
+
     return [
         ("Halation", VERSION),
         ("Python", platform.python_version()),

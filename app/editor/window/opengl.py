@@ -6,7 +6,7 @@ import os
 import warnings
 from typing import Any
 
-from . import window_library  # noqa: F401  (first: it says which copy of the library `glfw` loads)
+from . import window_library  # noqa: F401  (first: it loads `glfw`)
 
 import glfw  # isort: skip
 

@@ -127,6 +127,13 @@ class WindowPainter:
         self._paint_changes(picture, (x, y, x + width, y + height), written)
         picture.display_size = ImVec2(0.0, 0.0)  # nothing is left to draw for the library
 
+    def clear(self) -> None:
+        """Draw nothing but the ground: for a frame whose panels are empty."""
+        imgui.render()
+        picture = imgui.get_draw_data()
+        self._device.clear_window((0, 0, *measure_window()))
+        picture.display_size = ImVec2(0.0, 0.0)
+
     def _paint_changes(self, picture: imgui.ImDrawData, window: Box, written: frozenset[int]) -> None:
         before, self._lists = self._lists, tuple(map(_copy_list, picture.cmd_lists))
         boxes = [window]

@@ -22,23 +22,17 @@ _MODULES = 1230
 """About as many modules as the program has when the editor is loaded."""
 _PAUSE = 0.03
 """Seconds between two pictures of the line."""
-_INTERVAL = 0.0005
-"""Seconds after which the thread that loads lets this one draw: with the usual 0.005 each call waits as long."""
 
 
 def follow_loading(splash: Splash, loading: Thread) -> None:
     """Show how far a thread is that imports modules, until it ends."""
-    before, interval = len(sys.modules), sys.getswitchinterval()
-    sys.setswitchinterval(_INTERVAL)
-    try:
-        text = _SplashText(splash)
-        while loading.is_alive():
-            text.draw(max((len(sys.modules) - before) / (_MODULES - before), LEAST))
-            loading.join(_PAUSE)
-        text.draw(1.0)
-        text.close()
-    finally:
-        sys.setswitchinterval(interval)
+    before = len(sys.modules)
+    text = _SplashText(splash)
+    while loading.is_alive():
+        text.draw(max((len(sys.modules) - before) / (_MODULES - before), LEAST))
+        loading.join(_PAUSE)
+    text.draw(1.0)
+    text.close()
 
 
 class _SplashText:

@@ -200,6 +200,11 @@ class Window:
     def _confirm_exit(self) -> bool:
         return self.fault is not None or self._contexts.documents.ask_to_close()
 
+    @property
+    def _has_begun(self) -> bool:
+        """True from the frame on before which panels were seen: until then nothing else takes time."""
+        return self.frames > _HIDDEN + 1
+
     # --- every frame -------------------------------------------------------------------------------------------------
 
     def _before_panels(self) -> None:
@@ -227,10 +232,11 @@ class Window:
             editor.interface.dragging = False
         note_scope(editor)
         editor.canvas.hovered = editor.viewer.hovered = editor.curves.hovered = False
-        try:
-            draw_guarded(editor, "Rendering", self._updater.update)
-        finally:
-            self.device.target_window()
+        if self._has_begun:
+            try:
+                draw_guarded(editor, "Rendering", self._updater.update)
+            finally:
+                self.device.target_window()
         if self._dropped:
             paths, self._dropped = [Path(path) for path in self._dropped], []
             editor.log.attempt(lambda: take_files(editor, self._contexts.documents, paths))
@@ -298,7 +304,10 @@ class Window:
     def _after_panels(self) -> None:
         """Panels draw pictures of their own: the screen must be bound again before the window is drawn."""
         self.device.target_window()
-        self._painter.paint()
+        if self.frames > _HIDDEN:
+            self._painter.paint()
+        else:
+            self._painter.clear()
 
     def _before_swap(self) -> None:
         if self.fault is None:
@@ -315,8 +324,7 @@ class Window:
     def _rest(self) -> None:
         """Say how often the next frames come."""
         editor, time_now = self.editor, imgui.get_time()
-        has_begun = self.frames > _HIDDEN + 1
-        if not has_begun or self._updater.is_working or editor.timeline.playback.playing or editor.viewer.finding:
+        if not self._has_begun or self._updater.is_working or editor.timeline.playback.playing or editor.viewer.finding:
             self._worked_at = time_now
         resting = self.params.fps_idling
         resting.enable_idling = time_now - self._worked_at > GRACE and not self._input

@@ -1,6 +1,6 @@
-"""Says which copy of the window library `glfw` loads: that of imgui-bundle, as two copies know nothing of each other.
+"""Loads the window library: `glfw` with the copy of imgui-bundle, as two copies know nothing of each other.
 
-To import imgui-bundle does this too, and takes a fifth of a second, before which no window could be shown. Where its
+To import imgui-bundle chooses it too, and takes a fifth of a second, before which no window could be shown. Where its
 copy is not at its usual place, it is imported.
 """
 
@@ -10,6 +10,8 @@ import os
 import sys
 from importlib.util import find_spec
 from pathlib import Path
+from types import ModuleType
+from typing import cast
 
 _NAME = {"darwin": "libglfw.3.dylib", "win32": "glfw3.dll"}.get(sys.platform, "libglfw.so.3")
 
@@ -26,4 +28,17 @@ def choose_window_library() -> None:
         import imgui_bundle  # noqa: F401
 
 
+def import_window_library() -> None:
+    """Import `glfw` without cffi, a compiler of C headers that it would import for functions of Vulkan: 25 ms."""
+    is_hidden = "cffi" not in sys.modules
+    if is_hidden:
+        sys.modules["cffi"] = cast(ModuleType, None)  # what cannot be imported, until glfw has tried
+    try:
+        import glfw  # noqa: F401
+    finally:
+        if is_hidden:
+            del sys.modules["cffi"]
+
+
 choose_window_library()
+import_window_library()
