@@ -20,6 +20,8 @@ class Trait(StrEnum):
     """It calculates with scene-linear light, so that it belongs before the tone map."""
     NEEDS_HIGHLIGHTS = "needs highlights"
     """It makes light glow or spread. It needs light brighter than white, so that a file of 8 bits is a poor input."""
+    NEEDS_SURFACES = "needs surfaces"
+    """Its picture stays black where none of its inputs `depth`, `normal`, `position` and `ids` has a link."""
     MAKES_DISPLAY_LIGHT = "makes display light"
     """Its first output is ready for the display, as after a tone map."""
     CHANGES_ENCODING = "changes encoding"

@@ -2,7 +2,7 @@ from collections.abc import Mapping
 from math import ceil, log2
 from typing import Annotated, Any
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, OutputSocket, ProxyNote, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, OutputSocket, ProxyNote, Slider, Trait, Vector
 from ..light._coverage import COVERAGE_REACH
 
 _SEAM = 2.0
@@ -27,6 +27,7 @@ class GeometryEdges(Filter):
     aliases = (
         "edges from depth", "crease", "wireframe", "depth edges", "normal edges", "outline", "line art", "toon outline",
     )  # fmt: skip
+    traits = (Trait.NEEDS_SURFACES,)
 
     proxy_notes = (
         ProxyNote(("border", "crease", "gap"), "its lines are one or two pixels wide at any size", "look"),

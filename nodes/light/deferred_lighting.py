@@ -81,7 +81,7 @@ class DeferredLighting(Filter):
         "relight", "lights", "lighting", "light", "shader", "deferred shading", "point light", "spot light",
         "relighting", "normal light", "normality",
     )  # fmt: skip
-    traits = (Trait.NEEDS_SCENE_LIGHT,)
+    traits = (Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_SURFACES)
     version = 2
 
     albedo = Image((0.6, 0.6, 0.6, 1.0), doc="Color of the surfaces. Without a link, clay.")

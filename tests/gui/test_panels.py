@@ -192,6 +192,26 @@ def test_enter_takes_the_answer_in_the_focus_ring(gui) -> None:
     gui(body, PRESET)
 
 
+def test_messages_make_room_for_the_search(gui) -> None:
+    def body(ui) -> None:
+        ui.editor.log.add("saved", "info")
+        ui.wait(3)
+        before = ui.editor.places["toast 0"]
+        ui.move("Graph", (0.97, 0.8))
+        ui.wait(2)
+        ui.keys("Tab")
+        ui.wait(3)
+        search, toast = ui.editor.places["search field"], ui.editor.places["toast 0"]
+        assert search[2] > before[0]
+        assert 0.0 <= toast[0] and toast[2] < search[0]
+        ui.shot("toast_beside_search.png")
+        ui.keys("Escape")
+        ui.wait(3)
+        assert ui.editor.places["toast 0"] == before
+
+    gui(body, PRESET)
+
+
 def test_messages_show_up_and_go_at_a_click(gui) -> None:
     def body(ui) -> None:
         ui.editor.log.add("the first", "warning")

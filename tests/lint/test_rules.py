@@ -137,6 +137,17 @@ def test_light_of_a_file_of_bytes() -> None:
     assert found(chain(("exposure", {"stops": 1.0}), file="photo.jpg")) == []
 
 
+@pytest.mark.parametrize("type_name", ["deferred_lighting", "geometry_edges"])
+def test_what_works_on_surfaces_and_has_none(type_name: str) -> None:
+    node = NODES[type_name]()
+    graph = Graph().add_input("layer", Input(Kind.FIELD)).add_output("out", Output(Kind.FIELD)).add("a", node)
+    assert ("no-surface", "a") in found(graph)
+    for name in {"depth", "normal", "position", "ids"} & node.inputs.keys():
+        kind, channels = node.inputs[name].kind, node.inputs[name].channels
+        linked = graph.add_input("one", Input(kind, channels)).connect(Port("inputs", "one"), Port("a", name))
+        assert "no-surface" not in [rule for rule, _ in found(linked)], name
+
+
 @pytest.mark.parametrize(
     ("layer", "is_data"),
     [

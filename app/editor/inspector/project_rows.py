@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from halation.nodes import Value
+from halation.nodes import REFERENCE_HEIGHT, Value
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
@@ -89,7 +89,8 @@ class ProjectRows:
         session = rows.context.session
         reference = session.graph.settings.reference_height
         doc = translate("Lengths are pixels of a picture of this height, so that the look is the same at every size.")
-        rows.name("reference height", translate("lengths at", "value"), doc=doc, changed=reference is not None)
+        is_changed = reference not in (None, REFERENCE_HEIGHT)  # old graphs have none, new ones this
+        rows.name("reference height", translate("lengths at", "value"), doc=doc, changed=is_changed)
         width = rows.field()
         if reference is None:
             if imgui.button(translate_label("Pixels of the picture"), (width, 0.0)):

@@ -25,11 +25,16 @@ _TOAST = (
 
 
 class Toasts:
-    """The newest messages, stacked upwards from the bottom right; each fades after a while, or after a click."""
+    """The newest messages, stacked upwards from the bottom right; each fades after a while, or after a click.
+
+    They go to the left where a menu or a search would lie below them.
+    """
 
     def __init__(self, context: LogContext) -> None:
         self._context = context
         self._dismissed = frozenset[float]()
+        self._height = 0.0
+        """That of all of them in the last frame."""
 
     def draw(self) -> None:
         """Draw the toasts over everything."""
@@ -37,8 +42,12 @@ class Toasts:
         self._dismissed &= {entry.at for entry in self._context.log.toasts()}
         view, scale = imgui.get_main_viewport(), ui_scale()
         right, bottom = view.pos.x + view.size.x - 12 * scale, view.pos.y + view.size.y - _BELOW * scale
+        if entries and _reaches_popup(right - _WIDTH * scale, bottom - self._height):
+            right = view.pos.x + (12 + _WIDTH) * scale
+        top = bottom
         for index, entry in enumerate(reversed(entries)):
-            bottom -= self._draw_toast(entry, index, ImVec2(right, bottom)) + _GAP * scale
+            top -= self._draw_toast(entry, index, ImVec2(right, top)) + _GAP * scale
+        self._height = bottom - top
 
     def _draw_toast(self, entry: LogEntry, index: int, corner: ImVec2) -> float:
         """Draw a toast with its lower right corner at a point; returns its height."""
@@ -68,3 +77,13 @@ class Toasts:
         imgui.pop_style_color()
         imgui.pop_style_var(2)
         return extent.y
+
+
+def _reaches_popup(left: float, top: float) -> bool:
+    """True if an open menu or search goes beyond a point to the right and below."""
+    windows = [popup.window for popup in imgui.get_current_context().open_popup_stack]
+    return any(
+        window.pos.x + window.size.x > left and window.pos.y + window.size.y > top
+        for window in windows
+        if window is not None
+    )

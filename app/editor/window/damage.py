@@ -45,6 +45,29 @@ MOST_BOXES = 16
 PASS_COST = 40_000
 """What one more rectangle costs, in pixels: all lists are uploaded again for it (0.4 ms, 10 ns for a pixel)."""
 
+MANY = 4_000
+"""Vertices of a list from which on it is first looked whether most of them differ: 300 nodes have 20,000."""
+
+
+def are_mostly_new(before: Array, after: Array) -> bool:
+    """True if most vertices, uint32 [n, 5], of a large list differ, as while a graph is panned.
+
+    Counted from the start and from the end: something may have come or gone between vertices that stay.
+    """
+    shorter = min(len(before), len(after))
+    if shorter < MANY:
+        return False
+    spans = (slice(None, shorter), slice(-shorter, None))
+    return all(2 * np.count_nonzero((before[span] != after[span]).any(1)) > shorter for span in spans)
+
+
+def find_extent(vertices: Array, commands: Array) -> Array:
+    """A box that holds all that a list draws, float [1, 4]; left is beyond right where nothing is drawn."""
+    places, clips = np.ascontiguousarray(vertices[:, :2].T).view(np.float32), commands["clip"]
+    low = np.maximum(np.fmin.reduce(places, 1, initial=np.inf), clips[:, :2].min(0, initial=np.inf))
+    high = np.minimum(np.fmax.reduce(places, 1, initial=-np.inf), clips[:, 2:].max(0, initial=-np.inf))
+    return np.concatenate([low, high])[None]
+
 
 def make_rows(vertices: Array, indices: Array, commands: Array) -> Array:
     """The triangles of a list as rows of integers: equal rows draw equal pixels.
@@ -104,6 +127,9 @@ def find_picture_boxes(commands: Array, boxes: Array, textures: Collection[int])
         for box in surround(boxes[ends[number] - commands["count"][number] // 3 : ends[number]])
     ]
 
+
+COVER_ROWS = 500
+"""The first triangles of a list, among which opaque rectangles are looked for: backgrounds are drawn first."""
 
 Covers = tuple[Array, Array]
 """Rows at which opaque rectangles of one color begin, and their boxes."""

@@ -22,13 +22,16 @@ from msgspec import Struct
 from ...renderer import Device
 from .damage import (
     COMMAND,
+    COVER_ROWS,
     VERTEX,
     Array,
     Box,
     Covers,
+    are_mostly_new,
     find_boxes,
     find_changed_boxes,
     find_covers,
+    find_extent,
     find_last_cover,
     find_picture_boxes,
     make_rows,
@@ -54,6 +57,7 @@ class _DrawnList(Struct):
     _rows: Array | None = None
     _boxes: Array | None = None
     _covers: Covers | None = None
+    _extent: Array | None = None
 
     @property
     def memory(self) -> tuple[bytes, bytes, bytes]:
@@ -71,11 +75,15 @@ class _DrawnList(Struct):
         return np.frombuffer(self.indices, np.uint32)
 
     @property
+    def vertex_array(self) -> Array:
+        """Its vertices, uint32 [n, 5]."""
+        return np.frombuffer(self.vertices, np.uint32).reshape(-1, VERTEX)
+
+    @property
     def rows(self) -> Array:
         """Its triangles."""
         if self._rows is None:
-            vertices = np.frombuffer(self.vertices, np.uint32).reshape(-1, VERTEX)
-            self._rows = make_rows(vertices, self.index_array, self.command_table)
+            self._rows = make_rows(self.vertex_array, self.index_array, self.command_table)
         return self._rows
 
     @property
@@ -89,8 +97,24 @@ class _DrawnList(Struct):
     def covers(self) -> Covers:
         """Its opaque rectangles."""
         if self._covers is None:
-            self._covers = find_covers(self.rows)
+            self._covers = find_covers(self._make_first_rows(COVER_ROWS))
         return self._covers
+
+    def _make_first_rows(self, count: int) -> Array:
+        """The first rows, without making all of them."""
+        if self._rows is not None:
+            return self._rows[:count]
+        table = self.command_table.copy()
+        before = np.cumsum(table["count"]) - table["count"]
+        table["count"] = np.clip(3 * count - before.astype(np.int64), 0, table["count"])
+        return make_rows(self.vertex_array, self.index_array, table)
+
+    @property
+    def extent(self) -> Array:
+        """A box that holds all of it."""
+        if self._extent is None:
+            self._extent = find_extent(self.vertex_array, self.command_table)
+        return self._extent
 
     def take_from(self, equal: _DrawnList) -> None:
         """Take what was found out about a list that draws the same."""
@@ -110,8 +134,11 @@ class WindowPainter:
         self.drawn_boxes: tuple[Box, ...] = ()
         """What was drawn in the last frame."""
 
-    def paint(self) -> None:
-        """Draw the frame whose panels are complete; leave it to the window library where only that can draw it."""
+    def paint(self, is_empty: bool = False) -> None:
+        """Draw the frame whose panels are complete; leave it to the window library where only that can draw it.
+
+        Of an empty frame, whose panels are not there yet, only the ground is drawn.
+        """
         written = self._device.take_written()
         if not self._is_able:
             self._device.clear_window((0, 0, *measure_window()))
@@ -123,16 +150,12 @@ class WindowPainter:
             self.redraw_all()
             self._device.clear_window((0, 0, width, height))
             return
-        x, y = round(corner.x), round(corner.y)
-        self._paint_changes(picture, (x, y, x + width, y + height), written)
+        if is_empty:
+            self._device.clear_window((0, 0, width, height))
+        else:
+            x, y = round(corner.x), round(corner.y)
+            self._paint_changes(picture, (x, y, x + width, y + height), written)
         picture.display_size = ImVec2(0.0, 0.0)  # nothing is left to draw for the library
-
-    def clear(self) -> None:
-        """Draw nothing but the ground: for a frame whose panels are empty."""
-        imgui.render()
-        picture = imgui.get_draw_data()
-        self._device.clear_window((0, 0, *measure_window()))
-        picture.display_size = ImVec2(0.0, 0.0)
 
     def _paint_changes(self, picture: imgui.ImDrawData, window: Box, written: frozenset[int]) -> None:
         before, self._lists = self._lists, tuple(map(_copy_list, picture.cmd_lists))
@@ -230,7 +253,9 @@ def _find_changes(before: Sequence[_DrawnList], after: Sequence[_DrawnList], wri
         if past is None:
             boxes += surround(drawn.boxes)
             continue
-        if past.memory != drawn.memory:
+        if past.memory != drawn.memory and are_mostly_new(past.vertex_array, drawn.vertex_array):
+            boxes += [*surround(past.extent), *surround(drawn.extent)]
+        elif past.memory != drawn.memory:
             boxes += find_changed_boxes(past.rows, drawn.rows, past.boxes, drawn.boxes)
         else:
             drawn.take_from(past)

@@ -304,10 +304,7 @@ class Window:
     def _after_panels(self) -> None:
         """Panels draw pictures of their own: the screen must be bound again before the window is drawn."""
         self.device.target_window()
-        if self.frames > _HIDDEN:
-            self._painter.paint()
-        else:
-            self._painter.clear()
+        self._painter.paint(is_empty=self.frames <= _HIDDEN)
 
     def _before_swap(self) -> None:
         if self.fault is None:

@@ -1,4 +1,4 @@
-"""Display-ready pictures that are linked to nodes for scene light."""
+"""Pictures and links that leave nodes without the light or the surfaces that they work with."""
 
 from __future__ import annotations
 
@@ -25,7 +25,15 @@ CLIPPED_LIGHT = Rule(
     "A node that makes lights glow or spread gets an 8-bit file, in which nothing is brighter than white.",
     "Read an EXR of the same picture, or allow it if there is none.",
 )
+NO_SURFACE = Rule(
+    "no-surface",
+    "warning",
+    "A node that works on surfaces has no link that says where they are, so that its picture stays black.",
+    "Link layers of a render to it: depth, normals or positions.",
+)
 
+_SURFACES = ("depth", "normal", "position", "ids")
+"""Inputs that say where surfaces are."""
 _BYTES = frozenset({".bmp", ".gif", ".jpeg", ".jpg", ".tga", ".webp"})
 """Endings of files that always hold 8 bits; PNG and TIFF may hold more."""
 
@@ -64,6 +72,16 @@ def find_clipped_light(sheet: GraphFacts) -> Iterator[Problem]:
                 yield Problem(id, name, sentence, CLIPPED_LIGHT, f"links.{id}.{name}")
 
 
+def find_missing_surfaces(sheet: GraphFacts) -> Iterator[Problem]:
+    """Nodes that work on surfaces, and are linked to none."""
+    for id, item in sheet.list_having(Trait.NEEDS_SURFACES):
+        names = [name for name in _SURFACES if name in item.inputs]
+        if not any(sheet.source(Port(id, name)) for name in names):
+            wanted = f"{', '.join(names[:-1])} or {names[-1]}"
+            sentence = f"'{id}' finds no surface: link {wanted} of a render to it"
+            yield Problem(id, names[0], sentence, NO_SURFACE, f"links.{id}.{names[0]}")
+
+
 def _list_image_sources(sheet: GraphFacts, id: str) -> list[Port | None]:
     """The sources of the image inputs of a node."""
     inputs = signature(sheet.graph.nodes[id]).inputs
@@ -87,4 +105,8 @@ def _find_file(sheet: GraphFacts, source: Port) -> str:
     return getattr(item, path.name) if path else ""
 
 
-CHECKS = (Check(DISPLAY_LIGHT, find_display_light), Check(CLIPPED_LIGHT, find_clipped_light))
+CHECKS = (
+    Check(DISPLAY_LIGHT, find_display_light),
+    Check(CLIPPED_LIGHT, find_clipped_light),
+    Check(NO_SURFACE, find_missing_surfaces),
+)

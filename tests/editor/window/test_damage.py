@@ -6,13 +6,17 @@ import numpy as np
 import pytest
 from halation.editor.window.damage import (
     COMMAND,
+    MANY,
+    are_mostly_new,
     find_boxes,
     find_changed_boxes,
     find_covers,
+    find_extent,
     find_last_cover,
     find_picture_boxes,
     make_rows,
     merge_boxes,
+    surround,
 )
 
 SIZE = (64, 48)
@@ -23,12 +27,18 @@ def find_changes(before: np.ndarray, after: np.ndarray) -> list[tuple[int, int, 
     return find_changed_boxes(before, after, find_boxes(before), find_boxes(after))
 
 
-def make_list(rects: list[tuple[int, int, int, int, int]], clips: list[tuple[int, int, int, int]], texture: int = 7):
-    """Rectangles of one color each, as the interface library has them: a command for each clip."""
+def make_vertices(rects: list[tuple[int, int, int, int, int]]) -> np.ndarray:
+    """The corners of rectangles."""
     corners = [((x, y), (x + w, y), (x + w, y + h), (x, y + h)) for x, y, w, h, _ in rects]
     vertices = np.zeros((4 * len(rects), 5), np.uint32)
     vertices[:, :2] = np.array(corners, np.float32).reshape(-1, 2).view(np.uint32)
     vertices[:, 4] = np.repeat([rect[4] for rect in rects], 4)
+    return vertices
+
+
+def make_list(rects: list[tuple[int, int, int, int, int]], clips: list[tuple[int, int, int, int]], texture: int = 7):
+    """Rectangles of one color each, as the interface library has them: a command for each clip."""
+    vertices = make_vertices(rects)
     indices = np.concatenate([np.array((0, 1, 2, 0, 2, 3)) + 4 * n for n in range(len(rects))]).astype(np.uint32)
     commands = np.zeros(len(clips), COMMAND)
     share = len(rects) // len(clips)
@@ -86,6 +96,47 @@ def test_no_pixel_outside_of_the_boxes_differs(seed: int) -> None:
     for left, top, right, bottom in merged:
         covered[top:bottom, left:right] += 1
     assert covered.max(initial=0) <= 1 and (covered[~outside] == 1).all(), "merged boxes cover all, and each pixel once"
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_panned_list_differs_only_within_both_extents(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    rects, clips = [choose(random) for _ in range(MANY // 4)], [(5, 7, 50, 40), (9, 3, 44, 45)]
+    moved = [(x + 2, y + 1, *rest) for x, y, *rest in rects]
+    lists = make_vertices(rects), make_vertices(moved)
+    assert are_mostly_new(*lists)
+
+    (left, top, right, bottom), *others = merge_boxes(
+        [box for points in lists for box in surround(find_extent(points, make_list(rects, clips)[0]))], (0, 0, *SIZE)
+    )
+
+    assert not others and (left, top, right, bottom) == (5, 3, 50, 45)
+    before, after = draw(rects, clips), draw(moved, clips)
+    before[top:bottom, left:right] = after[top:bottom, left:right]
+    assert (before == after).all()
+
+
+def test_what_comes_between_vertices_that_stay_leaves_most_as_they_were() -> None:
+    random = np.random.default_rng(1)
+    rects = [choose(random) for _ in range(MANY // 4)]
+    points, new = make_vertices(rects), [(1, 1, 3, 3, 9)]
+    assert not are_mostly_new(points, points)
+    for place in (0, len(rects) // 4, len(rects)):
+        longer = make_vertices([*rects[:place], *new, *rects[place:]])
+        assert not are_mostly_new(points, longer) and not are_mostly_new(longer, points)
+
+
+def test_small_lists_are_always_compared_by_their_triangles() -> None:
+    rects = [choose(np.random.default_rng(2)) for _ in range(MANY // 4 - 1)]
+    assert not are_mostly_new(make_vertices(rects), make_vertices([(x + 1, *rest) for x, *rest in rects]))
+
+
+def test_an_extent_is_that_of_the_vertices_within_the_clips() -> None:
+    points, (commands, _) = make_vertices([(20, 10, 4, 5, 1)]), make_list([(20, 10, 4, 5, 1)], [(0, 0, 22, 48)])
+    assert surround(find_extent(points, commands)) == [(20, 10, 22, 15)]
+    points[0, :2] = np.array([np.nan, np.inf], np.float32).view(np.uint32)  # the others are its other three corners
+    assert surround(find_extent(points, commands)) == [(20, 10, 22, 48)]
+    assert not surround(find_extent(points[:0], commands[:0]))
 
 
 def test_equal_lists_have_no_box() -> None:
