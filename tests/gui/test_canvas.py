@@ -140,6 +140,23 @@ def test_a_choice_and_a_switch_on_nodes(gui) -> None:
     gui(body)
 
 
+def test_the_keyboard_reaches_a_frame(gui) -> None:
+    def body(ui) -> None:
+        show(ui, chain("exposure", "saturation"))
+        first = next(iter(ui.session.graph.nodes))
+        ui.session.select([ElementId(first)])
+        frame = ui.session.apply(AddFrame("Light", sizes=ui.editor.canvas.sizes))
+        ui.session.select([ElementId(first)])
+        ui.move(empty(ui))
+        ui.wait(3)
+        ui.keys("Alt+UpArrow")
+        assert ui.session.active == frame
+        ui.keys("Alt+DownArrow")
+        assert ui.session.active == first
+
+    gui(body)
+
+
 def test_frames_take_along_what_lies_on_them(gui) -> None:
     def body(ui) -> None:
         show(ui, chain("exposure", "bloom", "clip"))

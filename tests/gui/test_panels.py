@@ -203,7 +203,7 @@ def test_messages_make_room_for_the_search(gui) -> None:
         ui.wait(3)
         search, toast = ui.editor.places["search field"], ui.editor.places["toast 0"]
         assert search[2] > before[0]
-        assert 0.0 <= toast[0] and toast[2] < search[0]
+        assert toast[0] >= 0.0 and toast[2] < search[0]
         ui.shot("toast_beside_search.png")
         ui.keys("Escape")
         ui.wait(3)

@@ -119,6 +119,30 @@ def test_the_wheel_keeps_the_pixel_under_the_pointer(gui) -> None:
     gui(body, PRESET)
 
 
+def test_keys_move_the_picture_by_an_eighth_of_the_panel(gui) -> None:
+    def body(ui) -> None:
+        ui.settled()
+        hover(ui)
+        ui.keys("0")
+        left, top, right, bottom = ui.editor.places["Viewer"]
+        before, viewer = inside(ui, 0.5, 0.5), ui.editor.viewer
+        step = viewer.panel[0] / 8, viewer.panel[1] / 8
+        ui.keys("Ctrl+Shift+RightArrow")
+        ui.keys("Ctrl+Shift+DownArrow")
+        ui.keys("Ctrl+Shift+DownArrow")
+        after = inside(ui, 0.5, 0.5)
+        assert after == pytest.approx((before[0] - step[0], before[1] - 2 * step[1]), abs=1.0)
+        ui.keys("Ctrl+Shift+LeftArrow")
+        for _ in range(2):
+            ui.keys("Ctrl+Shift+UpArrow")
+        assert inside(ui, 0.5, 0.5) == pytest.approx(before, abs=1.0)
+        for _ in range(20):
+            ui.keys("Ctrl+Shift+LeftArrow")
+        assert left < inside(ui, 0.0, 0.5)[0] < right and top < before[1] < bottom, "a part of it stays visible"
+
+    gui(body, PRESET)
+
+
 def test_at_full_size_pixels_are_shown_one_to_one(gui) -> None:
     """The noise of the picture makes every pixel different: a shift or a blur would be seen."""
     shot = {}

@@ -30,6 +30,15 @@ _TITLES: Mapping[Way, tuple[str, str]] = {
 }
 
 
+def find_middles(places: Mapping[ElementId, Point], sizes: Mapping[ElementId, Point]) -> dict[ElementId, Point]:
+    """The middles of elements, from their left top corners; of frames, which hold others, those of their titles."""
+    return {
+        key: (x + sizes[key][0] / 2.0, y if key.kind == "frame" else y + sizes[key][1] / 2.0)
+        for key, (x, y) in places.items()
+        if key in sizes
+    }
+
+
 def find_neighbor(middles: Mapping[ElementId, Point], start: ElementId, way: Way) -> ElementId | None:
     """The element that lies nearest in a direction from another one; None at the end."""
     x, y = middles[start]
@@ -46,12 +55,7 @@ def find_neighbor(middles: Mapping[ElementId, Point], start: ElementId, way: Way
 def _walk(context: CanvasContext, way: Way, adds: bool) -> None:
     """Select the neighbor of the element selected last; without one, what is nearest to the middle of the view."""
     session, view = context.session, context.canvas
-    sizes = estimate_sizes(session.graph, view.sizes)
-    middles = {
-        key: (x + sizes[key][0] / 2.0, y + sizes[key][1] / 2.0)
-        for key, (x, y) in session.positions.items()
-        if key in sizes and key.kind not in ("frame", "dot")
-    }
+    middles = find_middles(session.positions, estimate_sizes(session.graph, view.sizes))
     if not middles:
         return
     if session.active in middles:

@@ -28,6 +28,14 @@ _COMPARES: tuple[tuple[Compare, str, str], ...] = (
     ("difference", "Difference", "D"),
     ("toggle", "A or B", ""),
 )
+_PAN = 0.125
+"""The part of the panel by which a key moves the picture."""
+_WAYS: tuple[tuple[str, str, float, float], ...] = (
+    ("Left", mark("Look Left"), 1.0, 0.0),
+    ("Right", mark("Look Right"), -1.0, 0.0),
+    ("Up", mark("Look Up"), 0.0, 1.0),
+    ("Down", mark("Look Down"), 0.0, -1.0),
+)
 _SHOWN = frozenset({"viewer"})
 
 
@@ -62,6 +70,14 @@ def _expose(step: float):
 def _zoom(factor: float):
     def act(context: ViewerContext) -> None:
         context.viewer.nearer *= factor
+
+    return act
+
+
+def _pan(x: float, y: float):
+    def act(context: ViewerContext) -> None:
+        before = context.viewer.shift
+        context.viewer.shift = (before[0] + _PAN * x, before[1] + _PAN * y)
 
     return act
 
@@ -193,6 +209,18 @@ VIEWER: tuple[Action[ViewerContext], ...] = (
     ),
     Action("viewer.nearer", "Zoom In", _zoom(2.0), "Viewer", "Equal", "viewer"),
     Action("viewer.farther", "Zoom Out", _zoom(0.5), "Viewer", "Minus", "viewer"),
+    *(
+        Action(
+            f"viewer.look_{key.lower()}",
+            label,
+            _pan(x, y),
+            "Viewer/Pan",
+            f"Ctrl+Shift+{key}Arrow",
+            "viewer",
+            repeats=True,
+        )
+        for key, label, x, y in _WAYS
+    ),
     *(
         Action(
             f"viewer.{name.replace(' ', '_')}",

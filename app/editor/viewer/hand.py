@@ -72,6 +72,10 @@ class ViewerInput:
             middle = sight.origin[0] + sight.panel[0] / 2, sight.origin[1] + sight.panel[1] / 2
             self._zoom(sight, viewer.nearer, at if hovered else middle)
             viewer.nearer = 1.0
+        if viewer.shift != (0.0, 0.0):
+            x, y = (viewer.shift[i] * sight.panel[i] / sight.density for i in (0, 1))
+            moved = sight.pan_by(x, y)
+            viewer.zoom, viewer.pan, viewer.shift = moved.zoom, moved.pan, (0.0, 0.0)
         if imgui.is_item_activated():
             self._press(sight, at)
         if self._hold is not None:

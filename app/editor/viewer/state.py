@@ -42,6 +42,8 @@ class ViewerState(Struct):
     pan: tuple[float, float] = (0.0, 0.0)
     nearer: float = 1.0
     """A requested zoom factor, applied about the pointer in the next frame."""
+    shift: tuple[float, float] = (0.0, 0.0)
+    """By how much of the panel the picture is moved in the next frame."""
     channels: Channels = "color"
     exposure: float = 0.0
     gamma: float = 1.0

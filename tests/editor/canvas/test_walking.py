@@ -7,9 +7,10 @@ from halation import document, presets
 from halation.authoring.commands import AddNode, ConnectSelection
 from halation.authoring.edits.appending import estimate_sizes
 from halation.authoring.edits.element_id import ElementId
+from halation.authoring.edits.elements import list_elements
 from halation.authoring.edits.layout import positions
 from halation.authoring.session import Session
-from halation.editor.canvas.walking import find_neighbor
+from halation.editor.canvas.walking import find_middles, find_neighbor
 from halation.errors import GraphError
 from halation.graph import Port
 from halation.resources.sandbox import UNRESTRICTED
@@ -32,11 +33,8 @@ def test_a_step_goes_to_what_lies_ahead() -> None:
 def test_every_element_is_reached(path) -> None:
     graph = document.load(path, sandbox=UNRESTRICTED)
     sizes = estimate_sizes(graph)
-    middles = {
-        key: (x + sizes[key][0] / 2.0, y + sizes[key][1] / 2.0)
-        for key, (x, y) in positions(graph, sizes).items()
-        if key.kind not in ("frame", "dot")
-    }
+    middles = find_middles(positions(graph, sizes), sizes)
+    assert middles.keys() >= {key for key in list_elements(graph) if key.kind in ("frame", "dot")}
     first = next(iter(middles))
     reached, new = {first}, [first]
     while new:
