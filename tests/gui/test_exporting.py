@@ -9,6 +9,7 @@ from urllib.request import url2pathname
 
 from gui_driver import Ui
 from halation import presets
+from imgui_bundle import imgui
 
 PRESET = next(path for path in presets.paths() if path.stem == "soft_bloom")
 
@@ -48,5 +49,35 @@ def test_a_page_is_tried_shown_and_written_and_a_table_is_refused(gui, tmp_path:
         ui.click("export close")
         ui.wait(3)
         assert "export" not in ui.editor.dialogs.open and dialog._trial is None
+
+    gui(body, PRESET)
+
+
+def test_the_enter_that_opens_a_dialog_does_not_answer_it(gui) -> None:
+    def body(ui: Ui) -> None:
+        ui.settled()
+        ui.window._contexts.dialogs.actions.run("file.export")
+        dialog = ui.window._overlays["Export"]
+        ui.until(lambda: dialog._trial is not None and dialog._trial.outcome is not None)
+        ui.wait(3)
+        ui.keys("Tab")
+        first = imgui.get_current_context().nav_id  # the format
+        ui.keys("Tab")
+        while imgui.get_current_context().nav_id != first:
+            last = imgui.get_current_context().nav_id
+            ui.keys("Tab")
+        ui.keys("Shift+Tab")
+        assert imgui.get_current_context().nav_id == last
+        ui.keys("Enter")
+        assert ui.editor.dialogs.browse is not None and dialog._export is None
+        ui.keys("Escape")
+        assert ui.editor.dialogs.browse is None
+
+        ui.keys("Escape")
+        ui.keys("Ctrl+P")
+        ui.type("save as", enter=False)
+        ui.keys("Enter")
+        assert ui.editor.dialogs.browse is not None
+        assert "palette" not in ui.editor.dialogs.open
 
     gui(body, PRESET)

@@ -13,8 +13,7 @@ from ...language.translation import translate, translate_plural
 from ..shared.dialogs import Browse, Question
 from ..theme.style import ui_scale
 from ..toolkit.buttons import align_right, main_button, quiet_button, width_of_buttons
-from ..toolkit.dialogs import backdrop, dialog, escape_pressed
-from ..toolkit.keys import is_enter_pressed
+from ..toolkit.dialogs import backdrop, dialog, escape_pressed, takes_enter
 from ..toolkit.labels import make_label, translate_label
 from ..toolkit.places import record
 from ..toolkit.words import cut_middle, draw_dim, draw_wrapped, font, tip
@@ -255,7 +254,7 @@ class FileBrowser:
         if not self._elsewhere and not self._walks and self._context.dialogs.question is None:
             if imgui.is_key_pressed(imgui.Key.backspace, False) and empty and not browsing.browse.saving:
                 self._go_to(browsing, browsing.folder.parent)
-            if is_enter_pressed(repeats=False):
+            if takes_enter():
                 self._open_chosen(browsing)
         self._draw_buttons(browsing)
 

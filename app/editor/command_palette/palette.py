@@ -10,9 +10,9 @@ from imgui_bundle import ImVec2, imgui
 from ...language.translation import translate
 from ..shared.fuzzy import Match, split_matched
 from ..theme.style import ui_scale, vec4
-from ..toolkit.dialogs import backdrop, dialog, escape_pressed
+from ..toolkit.dialogs import backdrop, dialog, escape_pressed, takes_enter
 from ..toolkit.fields import keep_typing
-from ..toolkit.keys import display_shortcut, is_enter_pressed
+from ..toolkit.keys import display_shortcut
 from ..toolkit.places import record
 from ..toolkit.words import cut_end, draw_dim, font, tip
 from .commands import Command, list_commands, rank_commands
@@ -47,7 +47,7 @@ class CommandPalette:
         with dialog(self._context, "Command palette", (620, 0), top=0.18):
             self._draw_field()
             moved = self._move_by_arrows(len(matches))
-            if matches and is_enter_pressed(repeats=False):
+            if matches and takes_enter():
                 chosen = matches[self._chosen][0]
             chosen = self._draw_list(matches, moved) or chosen
             close = close or escape_pressed()

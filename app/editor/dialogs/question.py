@@ -40,7 +40,7 @@ class QuestionDialog:
             chosen = _draw_buttons(self._context, question)
             if escape_pressed():
                 chosen = len(question.answers) - 1
-            elif enter_pressed() and not imgui.is_window_appearing():
+            elif enter_pressed():
                 chosen = 0
         if chosen is not None:
             self._context.dialogs.question = None

@@ -81,7 +81,12 @@ def dialog(
 def enter_pressed() -> bool:
     """True if Enter was pressed for the dialog as a whole: a button in the focus ring takes Enter for itself."""
     ringed = imgui.get_io().nav_visible and imgui.is_any_item_focused()
-    return not ringed and is_enter_pressed(repeats=False)
+    return not ringed and takes_enter()
+
+
+def takes_enter() -> bool:
+    """True if Enter was pressed since the dialog is there: the Enter that opened it is of its first frame."""
+    return not imgui.is_window_appearing() and is_enter_pressed(repeats=False)
 
 
 def escape_pressed() -> bool:
