@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from gui_driver import Ui
 from halation.graph import Port
+from imgui_bundle import imgui
 
 STOPS = 0.8
 """What the reference was made with; the document has none."""
@@ -94,3 +95,32 @@ def test_values_are_put_back_and_faults_are_said(gui, reference) -> None:
         assert ui.session.root == root and not window._search.is_open
 
     gui(body, graph)
+
+
+def test_controls_are_what_is_matched_and_the_window_grows_upwards(gui, reference, tmp_path: Path) -> None:
+    _, target = reference
+    graph = tmp_path / "controlled.json"
+    graph.write_text(json.dumps(GRAPH | {"controls": {"brighter": {"target": "expose.stops"}}}))
+
+    def body(ui: Ui) -> None:
+        ui.settled()
+        ui.window._contexts.dialogs.actions.run("file.match")
+        ui.wait(4)
+        window = ui.window._overlays["Match"]
+        assert window._patterns == "brighter" and window._search.count_numbers("brighter") == (1, "")
+        bottom = ui.ask(find_bottom)
+        window._reference = target
+        ui.wait(3)
+        ui.click("match start")
+        ui.until(lambda: window._search.outcome is not None, seconds=100)
+        ui.wait(4)
+        assert ui.ask(find_bottom) <= bottom + 1.0
+        ui.click("match back")
+
+    gui(body, graph)
+
+
+def find_bottom() -> float:
+    """The lower border of the window."""
+    window = next(window for window in imgui.get_current_context().windows if window.name.endswith("###match"))
+    return window.pos.y + window.size.y

@@ -40,7 +40,7 @@ class MatchWindow:
         self._reference: Path | None = None
         self._patterns = ""
         self._comparison, self._time = next(iter(_COMPARISONS)), next(iter(_TIMES))
-        self._was_open = False
+        self._was_open, self._height = False, 0.0
         self._can_fit = has_fit_libraries()
 
     def close(self) -> None:
@@ -69,15 +69,24 @@ class MatchWindow:
             self._draw_search()
         else:
             self._draw_choices()
+        self._stay_above(corner.y)
         imgui.end()
         dialogs.matches = bool(is_open) and dialogs.matches
+
+    def _stay_above(self, bottom: float) -> None:
+        """Move the window up when it grew beyond where it began; the user may move it anywhere."""
+        place, height = imgui.get_window_pos(), imgui.get_window_size().y
+        if height > self._height and place.y + height > bottom:
+            imgui.set_window_pos(ImVec2(place.x, max(bottom - height, 0.0)))
+        self._height = height
 
     # --- before ------------------------------------------------------------------------------------------------------
 
     def _suggest_patterns(self) -> str:
-        """The values of the selected nodes, or of all."""
+        """The values of the selected nodes; without any the controls, else all values."""
         session = self._context.session
-        return ", ".join(f"{id}.*" for id in session.root.nodes if id in session.selection) or "*.*"
+        chosen = [f"{id}.*" for id in session.root.nodes if id in session.selection]
+        return ", ".join(chosen or session.root.controls) or "*.*"
 
     def _draw_choices(self) -> None:
         palette, width = self._context.palette, measure_labels(map(translate, _TITLES), _LABELS)
