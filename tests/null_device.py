@@ -192,6 +192,9 @@ class NullDevice:
     def take_error(self) -> str:
         return ""
 
+    def forget_bindings(self) -> None:
+        """It remembers none."""
+
     def take_written(self) -> frozenset[int]:
         return frozenset()
 

@@ -231,6 +231,13 @@ class Device(Protocol):
         """The seconds that the device spends on what `work` asks for. Waits for it."""
         ...
 
+    def forget_bindings(self) -> None:
+        """Let the driver forget what the last program read and wrote.
+
+        Until then it may keep the memory of textures that were released.
+        """
+        ...
+
     def take_error(self) -> str:
         """The error that a call has caused since this was asked last, such as `GL_OUT_OF_MEMORY`; "" without one."""
         ...

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import OpenImageIO as oiio
 import pytest
+from halation.errors import InputError
 from halation.media import LayerRequest, read_info, read_layer, read_layers
 from halation.nodes import Kind
 from halation.resources.sandbox import UNRESTRICTED
@@ -149,3 +150,31 @@ def test_any_alphabet(make: Make, rng: Random) -> None:
     np.testing.assert_array_equal(
         read_layer(make("Bild_ä_画像 👁.exr", data), "", Kind.IMAGE, sandbox=UNRESTRICTED).array, data
     )
+
+
+@pytest.mark.parametrize("compression", ["zip", "dwab", "none"])
+@pytest.mark.parametrize(("format", "kind"), [("half", Kind.IMAGE), ("float", Kind.VECTOR), ("uint", Kind.FIELD)])
+def test_bands_of_a_tall_picture_are_the_whole(tmp_path: Path, compression: str, format: str, kind: Kind) -> None:
+    height, top = 256 * max(1, oiio.get_int_attribute("threads") // 2) * 2 + 37, 11
+    random = np.random.default_rng(7)
+    numbers = random.integers(0, 1000, (height, 33, 4))
+    spec = oiio.ImageSpec(33, height, 4, format)
+    spec.attribute("compression", compression)
+    spec.y = spec.full_y = -top
+    path = tmp_path / "tall.exr"
+    output = oiio.ImageOutput.create(str(path))
+    assert output.open(str(path), spec)
+    assert output.write_image(numbers.astype({"half": np.float16, "float": np.float32, "uint": np.uint32}[format]))
+    output.close()
+    pixels = read_layer(path, "", kind, sandbox=UNRESTRICTED)
+    whole = oiio.ImageInput.open(str(path)).read_image(0, 0, 0, pixels.array.shape[2], format)
+    np.testing.assert_array_equal(pixels.array, whole)
+
+
+def test_a_tall_picture_that_is_cut_short_is_an_error(tmp_path: Path) -> None:
+    height = 256 * max(1, oiio.get_int_attribute("threads") // 2) * 2
+    path = tmp_path / "tall.exr"
+    oiio.ImageBuf(np.random.default_rng(7).random((height, 33, 4), np.float32)).write(str(path), "half")
+    path.write_bytes(path.read_bytes()[: path.stat().st_size * 3 // 4])
+    with pytest.raises(InputError, match="is cut short or damaged"):
+        read_layer(path, "", Kind.IMAGE, sandbox=UNRESTRICTED)

@@ -18,8 +18,10 @@ from halation.nodes.color.exposure import Exposure
 from halation.renderer import Renderer, RenderRequest, open_device
 from halation.renderer.execution.array_pool import ArrayPool
 from halation.renderer.execution.decoding import MAX_LOOKAHEAD, MAX_LOOKAHEAD_BYTES, limit_lookahead
+from halation.renderer.execution.executor import Executor
 from halation.renderer.jobs.job import OutputSettings, run_job
 from halation.renderer.jobs.write_queue import MAX_WAITING, MAX_WAITING_BYTES, WriteQueue
+from halation.resources.large_arrays import create_array
 from halation.resources.sandbox import UNRESTRICTED
 
 FRAMES = range(1, 13)
@@ -227,6 +229,28 @@ def test_arrays_of_other_sizes_are_not_mixed_up():
     arrays.give([one[..., :3], other])
     assert arrays.take((2, 3, 4), np.float16) is other and arrays.take((3, 2, 4), np.float32) is not one
     assert arrays.take((2, 3, 4), np.float32) is one and arrays.take((2, 3, 4), np.float32) is not one
+
+
+def test_arrays_with_pages_of_their_own_are_lent_again():
+    arrays = ArrayPool(create_array)
+    one = arrays.take((1024, 1024, 4), np.float32)
+    arrays.give([one[..., :3]])
+    assert arrays.take((1024, 1024, 4), np.float32) is one
+
+
+def test_textures_make_room_for_the_pixels_of_the_last_frame(graph, shot, monkeypatch):
+    """Only the last frame is read when nothing but its output is on the device."""
+    engine = Renderer(open_device(sandbox=UNRESTRICTED), budget=0, sandbox=UNRESTRICTED)
+    allocated, download = list[int](), Executor.download
+
+    def watched(self, plan, number, arrays):
+        allocated.append(self.textures.allocated - plan.surfaces[number].nbytes)
+        return download(self, plan, number, arrays)
+
+    monkeypatch.setattr(Executor, "download", watched)
+    run_job(engine, graph, RenderRequest(), writing(shot), tuple(FRAMES))
+    engine.close()
+    assert all(allocated[:-1]) and allocated[-1] == 0
 
 
 def large(nbytes: int) -> np.ndarray:

@@ -17,8 +17,9 @@ from .names import ShaderNames
 from .pass_parts import PassContext
 
 LOCAL_SIZE = 64
-"""Invocations of a work group, side by side across the pixels that each one makes. 64 is a multiple of the width at
-which all common GPUs execute (32 at NVIDIA, 32 or 64 at AMD); a smaller group would leave lanes idle."""
+"""Invocations of a work group, side by side in a row, whichever way the pixels lie that each one makes: on the software
+rasterizer a group across rows would take twice as long to convolve them. 64 is a multiple of the width at which all
+common GPUs execute (32 at NVIDIA, 32 or 64 at AMD); a smaller group would leave lanes idle."""
 
 ROWS = 2
 """Pixels of a column that one invocation makes. On the software rasterizer four are a tenth faster, but take the driver
@@ -43,11 +44,12 @@ def count_rows(context: PassContext) -> int:
 
 
 def count_groups(convolve: Convolve | None, count: int, size: Size) -> tuple[int, int, int]:
-    """Work groups that cover a picture: in a block across the axis, along the axis, and the number of blocks."""
+    """Work groups that cover a picture: side by side in a block, below each other, and the number of blocks."""
     axis = convolve.axis if convolve else 1
-    along, across = -(-size[axis] // count), -(-size[1 - axis] // LOCAL_SIZE)
-    block = across if convolve is None else min(across, BLOCK) if axis == 1 else 1
-    return (block, along, -(-across // block))
+    across, down = (-(-size[0] // count), size[1]) if axis == 0 else (size[0], -(-size[1] // count))
+    groups = -(-across // LOCAL_SIZE)
+    block = groups if convolve is None or axis == 0 else min(groups, BLOCK)
+    return (block, down, -(-groups // block))
 
 
 def write_main(
@@ -65,7 +67,7 @@ def write_main(
         "void main() {",
         "uint across = (gl_WorkGroupID.z * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x"
         " + gl_LocalInvocationID.x;",
-        f"ivec2 first = {_write_place(f'int(gl_WorkGroupID.y + first_row) * {count}', 'int(across)', convolve)};",
+        f"ivec2 first = ivec2(across, gl_WorkGroupID.y + first_row) * {_write_spacing(count, convolve)};",
         *([f"first += {names.start};"] if names.start else []),
         "pixel = first; extent = grid;",
     ]
@@ -113,6 +115,7 @@ def name_results(texels: Sequence[str]) -> list[str]:
     return [f"texel{number}" for number in range(len(texels))]
 
 
-def _write_place(along: str, across: str, convolve: Convolve | None) -> str:
-    """The position of a pixel from its places along and across the axis; both axes of a convolution share a program."""
-    return f"along * ({along}) + along.yx * {across}" if convolve else f"ivec2({across}, {along})"
+def _write_spacing(count: int, convolve: Convolve | None) -> str:
+    """The distance of invocations that lie side by side, and below each other. Both axes of a convolution share a
+    program."""
+    return f"(1 + along * {count - 1})" if convolve else f"ivec2(1, {count})"

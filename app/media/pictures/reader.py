@@ -9,12 +9,17 @@ import OpenImageIO as oiio
 
 from ...color.transforms import Array
 from ...errors import InputError
+from ...resources.large_arrays import create_array
 from ...resources.sandbox import Sandbox
 from ..convert import LayerRequest, Pixels, convert_layer, select_channels
 from ..layers import ImageInfo, Layer, find_layer
 from ..limits import check_memory
 from .open import describe_fault, describe_picture, open_picture
 from .wide_integers import scale_to_unit
+
+_BAND_ROWS = 256
+"""Rows of an EXR that two threads decode at a time: the largest block of scan lines (OpenEXR file layout, DWAB), and 16
+blocks of ZIP, so that threads seldom wait for each other."""
 
 _DECODED_AS = {"float16": "half", "uint8": "uint8", "uint16": "uint16", "uint32": "uint"}
 
@@ -55,14 +60,41 @@ def decode_layers(picture: oiio.ImageInput, info: ImageInfo, layers: Sequence[La
     for (part, format), indices in spans.items():
         check_memory(info.path, info.size, max(indices) + 1 - min(indices))
         try:
-            block = picture.read_image(part, 0, min(indices), max(indices) + 1, format)
+            block = _read_block(picture, info, part, min(indices), max(indices) + 1, format)
         except (MemoryError, ValueError) as error:
             width, height = info.size
             raise InputError(f"{info.path}: {width}x{height} pixels do not fit into memory") from error
         if block is None:
             raise InputError(f"{info.path}: {describe_fault(picture.geterror() or 'corrupt')}")
         picture.seek_subimage(part, 0)
-        blocks[part, format] = scale_integers(np.asarray(block), info, picture.spec())
+        blocks[part, format] = scale_integers(block, info, picture.spec())
     return [
         select_channels(blocks[key], layer.indices, min(spans[key])) for key, layer in zip(keys, layers, strict=True)
     ]
+
+
+def _read_block(
+    picture: oiio.ImageInput, info: ImageInfo, part: int, first: int, end: int, format: str
+) -> Array | None:
+    """Channels `first` to before `end` of a part; None if they cannot be decoded.
+
+    An EXR is decoded in bands of rows: OpenImageIO copies each array that it returns, and of a whole picture there
+    would be two at a time.
+    """
+    picture.seek_subimage(part, 0)
+    spec = picture.spec()
+    height = _BAND_ROWS * max(1, oiio.get_int_attribute("threads") // 2)
+    if info.format != "openexr" or spec.tile_width or spec.height <= height:
+        block = picture.read_image(part, 0, first, end, format)
+        return None if block is None else np.asarray(block)
+    whole: Array | None = None
+    for row in range(0, spec.height, height):
+        rows = slice(row, min(row + height, spec.height))
+        band = picture.read_scanlines(part, 0, spec.y + rows.start, spec.y + rows.stop, 0, first, end, format)
+        if band is None:
+            return None
+        if whole is None:
+            whole = create_array((spec.height, spec.width, end - first), band.dtype)
+        whole[rows] = band.reshape(whole[rows].shape)
+        del band  # before there is another
+    return whole

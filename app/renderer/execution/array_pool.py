@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
@@ -14,10 +14,19 @@ MAX_SPARE_ARRAYS = 3
 used for a graph of one output, and fewer would make every frame allocate memory."""
 
 
-class ArrayPool:
-    """Lends arrays, and lends them again after they were given back. Any thread may give them back."""
+ArrayMaker = Callable[[tuple[int, ...], type[np.floating]], Array]
+"""Makes an array of a shape and type with undefined numbers."""
 
-    def __init__(self) -> None:
+
+class ArrayPool:
+    """Lends arrays, and lends them again after they were given back. Any thread may give them back.
+
+    `create` makes new ones. Those that are lent once and never given back are best made by numpy, whose allocator finds
+    memory of the last one.
+    """
+
+    def __init__(self, create: ArrayMaker = np.empty) -> None:
+        self._create = create
         self._spare: deque[Array] = deque(maxlen=MAX_SPARE_ARRAYS)
 
     def take(self, shape: tuple[int, ...], dtype: type[np.floating]) -> Array:
@@ -27,8 +36,8 @@ class ArrayPool:
             if array.shape == shape and array.dtype == dtype:
                 return array
             self._spare.append(array)
-        return np.empty(shape, dtype)
+        return self._create(shape, dtype)
 
     def give(self, arrays: Iterable[Array]) -> None:
         """Give back arrays, or views of them, that nobody reads any more."""
-        self._spare.extend(array if array.base is None else array.base for array in arrays)
+        self._spare.extend(array.base if isinstance(array.base, np.ndarray) else array for array in arrays)

@@ -156,6 +156,14 @@ class Runner:
         with self.device.make_current():
             self.textures.release_idle()
 
+    def release_unused(self) -> None:
+        """Release textures that hold nothing, unless results are kept for later work, which would use them too."""
+        if not self.textures.budget:
+            with self.device.make_current():
+                self.textures.release_idle()
+                if self.counters.passes:  # the first program of a process takes 9 MiB
+                    self.device.forget_bindings()
+
     def close(self) -> None:
         """Give everything back. Runs that are under way end here."""
         if self._executor.closed:

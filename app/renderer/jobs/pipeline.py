@@ -84,7 +84,7 @@ class FramePipeline:
             passes = self._try_render(task, following)
             task_after = next(tasks, None)  # while the device is busy
             if passes is not None:
-                self._try_write(task, *passes)
+                self._try_write(task, *passes, is_last=following is None)
             self._close_sessions_before(task.session)
             task, following = following, task_after
         for written_frame in self._write_queue.collect_all():
@@ -223,10 +223,10 @@ class FramePipeline:
         self.seconds["render"] += time.perf_counter() - started
         return passes
 
-    def _try_write(self, task: FrameTask, lease: TextureLease, passes: int) -> None:
+    def _try_write(self, task: FrameTask, lease: TextureLease, passes: int, *, is_last: bool) -> None:
         """Wait for the outputs of a frame, and hand them to the write queue."""
         try:
-            outputs = self._download(task, lease)
+            outputs = self._download(task, lease, is_last=is_last)
             files_by_rows = self._row_writers.finish() if self._row_writers else frozenset()
         except HalationError as fault:
             self._drop_frame(task, lease, fault)
@@ -248,9 +248,11 @@ class FramePipeline:
         self.seconds["write"] += seconds
         self._finish_task(task, report)
 
-    def _download(self, task: FrameTask, lease: TextureLease) -> dict[str, Array]:
-        """Wait for the outputs of a frame."""
+    def _download(self, task: FrameTask, lease: TextureLease, *, is_last: bool) -> dict[str, Array]:
+        """Wait for the outputs of a frame. Textures that no frame will use make room for them."""
         started = time.perf_counter()
+        if is_last:
+            self._renderer.runner.release_unused()
         outputs = self._renderer.runner.download(task.plan, self._write_queue.arrays)
         lease.close()
         self.seconds["render"] += time.perf_counter() - started

@@ -8,6 +8,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Generic, TypeVar
 
 from ...resources.interrupts import delay_interrupts
+from ...resources.large_arrays import create_array
 from ..execution.array_pool import ArrayPool
 from ..execution.decoding import Array
 
@@ -28,7 +29,7 @@ class WriteQueue(Generic[WriteResult]):
     """
 
     def __init__(self, writers: int = 1) -> None:
-        self.arrays = ArrayPool()
+        self.arrays = ArrayPool(create_array)
         self._most = writers + MAX_WAITING
         self._writer = ThreadPoolExecutor(writers, thread_name_prefix="write")
         self._writes: deque[tuple[Future[WriteResult], int]] = deque()

@@ -200,6 +200,10 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
             work()
         return self._timer.elapsed / 1e9
 
+    def forget_bindings(self) -> None:
+        if self.target.form == "compute":  # Mesa binds images only when it runs a program
+            self._functions.dispatch(self._nothing, (1, 1, 1))
+
     def take_error(self) -> str:
         error = self.context.error
         return "" if error == "GL_NO_ERROR" else error
@@ -247,6 +251,11 @@ class OpenGLDevice(Struct, frozen=True, dict=True):
     @cached_property
     def _functions(self) -> OpenGLFunctions:
         return OpenGLFunctions(self.context)
+
+    @cached_property
+    def _nothing(self) -> moderngl.ComputeShader:
+        """A program that reads and writes nothing."""
+        return self.context.compute_shader("#version 430 core\nlayout(local_size_x = 1) in;\nvoid main() {}\n")
 
     @cached_property
     def _interpolation(self) -> moderngl.Sampler:
