@@ -39,7 +39,7 @@ class Preview:
     their sentences, without files that are still to be chosen. `timed` measures passes. While `paused`, nothing is
     computed; while it `skims`, only cached frames are shown. `thumbnailing` draws small pictures of nodes whose results
     exist. `ahead` is the frame to compute when nothing else is left to do. What a `glimpse` shows is computed first;
-    the rest follows when the `clock` says that the graph has rested. The last frame took `seconds`.
+    the rest follows when the `clock` says that the graph rests. The last frame took `seconds`, its nodes `timings`.
     """
 
     def __init__(self, renderer: Renderer, display: Display) -> None:
@@ -52,7 +52,7 @@ class Preview:
         self._seen: Graph | None = None
         """The last requested graph: it may differ from the request in its layout."""
         self._stopwatch = PassTimes()
-        self._timings: dict[str, NodeTiming] = {}
+        self.timings: Mapping[str, NodeTiming] = MappingProxyType({})
         self._cameras: dict[Port, CameraModel] = {}
         self.faults: Mapping[str, str] = MappingProxyType({})
         self.errors: Mapping[str, HalationError] = MappingProxyType({})
@@ -130,7 +130,7 @@ class Preview:
         self._images.keep(())
         self._thumbnails.clear()
         self._stopwatch.clear()
-        self._timings = {}
+        self.timings = {}
         self._cameras.clear()
         self._runner.release_idle()
 
@@ -210,14 +210,14 @@ class Preview:
         return self._job.preroll_progress if self._job and not self._job.ahead else None
 
     @property
-    def timings(self) -> Mapping[str, NodeTiming]:
-        """The time and memory of each displayed node when it ran last, by path."""
-        return self._timings
-
-    @property
     def memory(self) -> tuple[int, int]:
         """Bytes of textures on the device, and the memory budget."""
         return self._runner.textures.allocated, self._runner.textures.budget
+
+    @property
+    def is_decoding(self) -> bool:
+        """True while a picture waits for a file that a thread decodes."""
+        return self._job is not None and not self._job.is_ready
 
     # --- one step after the other ------------------------------------------------------------------------------------
 
@@ -395,6 +395,6 @@ class Preview:
         self._cameras |= plan.cameras
         if job.timings is not None:
             work.timings |= self._stopwatch.note(plan, job.timings)
-            self._timings = work.timings
+            self.timings = work.timings
         subjects = list_thumbnail_sources(work.request, plan) if self.thumbnailing and not self.skims else {}
         self._thumbnails.offer(subjects, color_settings(work.request.graph))

@@ -28,6 +28,9 @@ if TYPE_CHECKING:
     from .contexts import Contexts
     from .editor import Editor
 
+_LONG = 0.3
+"""Seconds of waiting for a file after which fewer frames are drawn; most files are read within that."""
+
 FRAME_BUDGET = 0.012
 """Seconds of rendering per frame of the window: the rest of a sixtieth of a second is for drawing panels."""
 
@@ -64,6 +67,8 @@ class FrameUpdater:
         self._reported: set[str] = set()
         self._seconds_over_budget = 0
         self.is_working = False
+        self._ready_at = 0.0
+        """When no picture waited for a file, last."""
         """True while there is more to compute."""
 
     def update(self) -> None:
@@ -126,10 +131,17 @@ class FrameUpdater:
         preview.patience = math.inf if is_painting else PATIENCE
         seconds = PLAY_BUDGET if editor.timeline.playing else FRAME_BUDGET
         self.is_working = preview.work(seconds, STROKE_BUDGET if is_painting else 0.0)
+        if not preview.is_decoding:
+            self._ready_at = time.perf_counter()
         self.is_working = self._run_passes(flat, scale) or self.is_working
         self.is_working = self._work_on_page() or self.is_working
         if not self.is_working and not editor.interface.dragging and not editor.canvas.panning:
             self.is_working = self._load_nodes()
+
+    @property
+    def waits_long(self) -> bool:
+        """True while a large file is decoded: frames would take time from that, and show nothing new."""
+        return self.is_working and time.perf_counter() - self._ready_at > _LONG
 
     def _load_nodes(self) -> bool:
         """Load classes of nodes for some milliseconds, so that the search opens at once; True while there are more.

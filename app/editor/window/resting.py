@@ -50,7 +50,7 @@ _LOOK = 0.25
 def choose_idle_rate(editor: Editor) -> float:
     """How often the window draws while no event comes, in frames per second."""
     has_news = editor.dialogs.matches or "export" in editor.dialogs.open
-    if editor.dialogs.browse is not None or editor.renders.is_busy or has_news:
+    if editor.dialogs.browse is not None or editor.renders.is_busy or editor.preview.is_decoding or has_news:
         return _SOON
     newest = editor.log.entries[-1] if editor.log.entries else None
     if editor.exports.running or (newest and editor.log.age(newest) < max(SECONDS, TOAST_SECONDS) + 1.0):

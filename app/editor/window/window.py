@@ -89,8 +89,7 @@ class Window:
         self._filling: PanelTitle | None = None
         """The panel that fills the window."""
         self._docks = DockShares(lambda name: self.params.docking_params.dock_space_id_from_name(name))
-        self._dropped: list[str] = []
-        self._input = InputQueue()
+        self._dropped, self._input = list[str](), InputQueue()
         self._fronted: set[str] = set()
         self._appearance = Appearance()
         self._layout = LAYOUTS["composite"]
@@ -121,6 +120,7 @@ class Window:
         window.show_menu_bar = window.show_status_bar = True
         window.show_menu_app = window.show_menu_view = window.show_status_fps = False
         window.remember_theme = window.remember_status_bar_settings = False
+        params.fps_idling.time_active_after_last_event = 0.0  # `resting` knows about events, the library does not
         params.docking_params.docking_splits = make_splits(self._layout)
         params.docking_params.main_dock_space_node_flags |= _NODE
         params.docking_params.dockable_windows = [self._dockable(docked) for docked in DOCKED]
@@ -324,7 +324,7 @@ class Window:
         if not self._has_begun or self._updater.is_working or editor.timeline.playback.playing or editor.viewer.finding:
             self._worked_at = time_now
         resting = self.params.fps_idling
-        resting.enable_idling = time_now - self._worked_at > GRACE and not self._input
+        resting.enable_idling = (time_now - self._worked_at > GRACE or self._updater.waits_long) and not self._input
         settling = self._settling.choose_rate(self._input.has_forwarded, time_now)
         resting.fps_idle = max(settling, choose_idle_rate(editor))
 
