@@ -7,6 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from ...graph import Unknown
+from ...language.translation import mark
 from ..shared.action import Action
 from ..shared.window_commands import LayoutName, PanelTitle
 from ..theme.style import ui_scale
@@ -41,8 +42,15 @@ def _open_page(context: ViewSettingsContext) -> None:
         dialogs.open.add("panel")
 
 
-def _theme(context: ViewSettingsContext) -> None:
-    context.store.change(theme="light" if context.store.current.theme == "dark" else "dark")
+def _make_theme(theme: str, label: str) -> Action[ViewSettingsContext]:
+    return Action(
+        f"view.theme.{theme}",
+        label,
+        lambda context: context.store.change(theme=theme),
+        "View/Theme",
+        checked=lambda context: context.store.current.theme == theme,
+        separated=theme == "dark",
+    )
 
 
 def _scale(step: float) -> Callable[[ViewSettingsContext], object]:
@@ -56,6 +64,11 @@ def _apply_layout(context: ViewSettingsContext, name: LayoutName) -> None:
     context.commands.apply_layout(name)
 
 
+_THEMES: tuple[tuple[str, str], ...] = (
+    ("dark", mark("Dark Theme")),
+    ("light", mark("Light Theme")),
+    ("contrast", mark("High Contrast Theme")),
+)
 _LAYOUTS: tuple[tuple[LayoutName, str, str, str], ...] = (
     ("composite", "Composite", "Ctrl+F1", "to build a graph, which is below the viewer; these are their first places"),
     ("beside", "Composite, Graph Beside", "Ctrl+F2", "to build a graph beside the viewer, on a wide display"),
@@ -72,14 +85,7 @@ VIEW: tuple[Action[ViewSettingsContext], ...] = (
         "view.timings", "Time and Memory", _toggle("timings"), "View", "Shift+T", "graph", checked=_is_shown("timings")
     ),
     Action("view.minimap", "Overview", _toggle("minimap"), "View", checked=_is_shown("minimap")),
-    Action(
-        "view.theme",
-        "Light Theme",
-        _theme,
-        "View",
-        checked=lambda context: context.store.current.theme == "light",
-        separated=True,
-    ),
+    *(_make_theme(theme, label) for theme, label in _THEMES),
     Action("view.larger", "Larger Interface", _scale(0.25), "View", "Ctrl+Equal"),
     Action("view.smaller", "Smaller Interface", _scale(-0.25), "View", "Ctrl+Minus"),
     Action(
