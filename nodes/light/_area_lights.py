@@ -3,24 +3,11 @@
 from __future__ import annotations
 
 import math
-from functools import cache
-from pathlib import Path
-from struct import unpack
 
 from .._declare import Light, LightKind
 
 AREA_KINDS = (LightKind.RECTANGLE, LightKind.DISC, LightKind.TUBE)
 """The kinds in the order of their numbers in GLSL."""
-
-COSINE_CELLS = 64
-"""Roughnesses, and angles of the eye, in the table of matrices."""
-
-
-@cache
-def read_cosines() -> tuple[float, ...]:
-    """The table of linearly transformed cosines, 64 cells in a row. tests/data/fit_area_lights.py makes its file."""
-    floats = Path(__file__).with_name("area_lights.bin").read_bytes()
-    return unpack(f"<{len(floats) // 4}f", floats)
 
 
 def pack_area_light(light: Light, gain: float) -> tuple[float, ...]:

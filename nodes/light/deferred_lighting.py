@@ -26,7 +26,7 @@ from .._declare import (
     name_lights,
     ramp_at,
 )
-from ._area_lights import AREA_KINDS, COSINE_CELLS, read_cosines
+from ._area_lights import AREA_KINDS
 from ._coverage import COVERAGE_REACH
 from ._light_cookies import tabulate_throws
 from ._light_masks import BATCH, draw_masks, is_limited
@@ -67,10 +67,10 @@ class DeferredLighting(Filter):
     Points, spots, suns, spheres, rectangles, discs and tubes; a light with negative intensity subtracts light. Diffuse
     reflection is Lambert's; specular reflection is that of GGX microfacets (Walter et al. 2007, Heitz 2014, Schlick
     1994) or Phong's lobe (Lafortune and Willems 1994), for spheres by the point nearest to the mirrored ray (Karis
-    2013). Rectangles, discs and tubes light by linearly transformed cosines (Heitz et al. 2016), always those of GGX.
-    Light falls off with the square of the distance, times (1 - (d / reach)^4)^2 if a reach is given: with many lights,
-    those with a reach are fast. A light can have a color temperature instead of a color. A swarm adds many small lights
-    at once.
+    2013). Rectangles, discs and tubes reflect in GGX facets by the part that they cover of the cap of directions that
+    facets mirror (Dupuy and Benyoub 2023), also where the model is Phong's. Light falls off with the square of the
+    distance, times (1 - (d / reach)^4)^2 if a reach is given: with many lights, those with a reach are fast. A light
+    can have a color temperature instead of a color. A swarm adds many small lights at once.
 
     A light with `shadow` casts shadows of what the picture shows, by rays through the depth (McGuire and Mara 2014),
     soft for a light with a size. A light with a `matte` lights only what is in one of the four mattes. A light with a
@@ -273,7 +273,6 @@ class DeferredLighting(Filter):
             **surface,
             lit=light,
             areas=tabulate_lights(draw, areas, self.intensity),
-            cosines=draw.table(read_cosines(), COSINE_CELLS),
             overlap=_HERE | {"lit": 0},
             count=len(areas),
             **numbers,
@@ -305,7 +304,6 @@ class DeferredLighting(Filter):
             throws=tabulate_throws(draw, lamps),
             lights=tabulate_lights(draw, lamps, self.intensity),
             areas=tabulate_lights(draw, areas, self.intensity),
-            cosines=draw.table(read_cosines(), COSINE_CELLS),
             overlap=_HERE | {"lit": 0, "mask": COVERAGE_REACH},
             model=self.model,
             lamps=len(lamps),

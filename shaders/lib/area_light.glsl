@@ -1,21 +1,37 @@
-// Light of rectangles, discs and tubes by linearly transformed cosines (Heitz, Dupuy, Hill and Neubelt 2016), in passes
-// that read `areas`, the table of lights, and `cosines`, the table of matrices.
+// Light of rectangles, discs and tubes on matte and on shiny surfaces, in passes that read `areas`, the table of lights.
 //
-// A matrix turns the lobe of GGX into a cosine. The light that a cosine reflects from a polygon has a closed form (Lambert
-// 1760), in which edges are summed. Each light is a polygon here: its outline as the surface sees it. A light is convex
-// and equally bright everywhere, so nothing but its outline counts.
+// Each light is a polygon here: its outline as the surface sees it. A light is convex and equally bright everywhere, so
+// nothing but its outline counts. For matte surfaces the integral has a closed form (Lambert 1760), in which edges are
+// summed.
+//
+// The light that visible facets of GGX mirror lies evenly on a cap of a sphere (Dupuy and Benyoub 2023). So the outline
+// is mapped to that cap: the area it encloses there is the part of the lobe that the light covers, whatever the
+// roughness. What is left, Fresnel's term and the part of facets that light reaches, is smooth on the cap. Edges are
+// mapped at places that lie evenly in a cosine, which a matrix turns into about the lobe (Heitz et al. 2016).
 
 #include "lib/brdf.glsl"
 #include "lib/light_window.glsl"
 #include "lib/pi.glsl"
 
 const int AREA_RECTANGLE = 0, AREA_DISC = 1;  // a tube is neither
-const int AREA_CELLS = 64;                    // roughnesses, and angles of the eye, in the table of matrices
 const int AREA_RIM = 16;                      // corners of a disc: with its area, within 1e-3 of the integral
 const int AREA_ARC = 9;                       // corners at each end of a tube
-// From the world to the axes of a surface, on from there into a cosine, and back to the world; and the part of white
-// light that GGX reflects with a Fresnel reflectance of 1.
-struct AreaSurface { vec3 view; mat3 frame, lobe, back; float share; };
+// The longest piece of an edge, in the cosine that is about the lobe, and that on the horizon, along which the outline
+// turns quickly. Choices between time and error, as are those below: with pi / 4, one in a hundred lights that the
+// horizon cuts is off by 0.018 of its radiance, with pi / 6 by 0.012.
+const float AREA_PIECE = PI / 6.0, AREA_LOW_PIECE = PI / 12.0;
+const float AREA_STRAIGHT = 0.866;  // the cosine of that longest piece
+// Heights of parts of the cap, up to which one place stands for the way from the middle to the edge, or two.
+const float AREA_FLAT = 0.1, AREA_ROUND = 0.5;
+// How much narrower than the lobe that cosine is. With 2, lights were found that it sees from a side, off by 0.3.
+const float AREA_WIDE = 1.5;
+// Places along a way at which the mean is taken, as parts of the height, and their weights (Gauss and Legendre).
+const vec3 AREA_PLACES[3] = vec3[](vec3(0.5, 0.0, 0.0), vec3(0.21132487, 0.78867513, 0.0), vec3(0.11270167, 0.5, 0.88729833));
+const vec3 AREA_SHARES[3] = vec3[](vec3(1.0, 0.0, 0.0), vec3(0.5, 0.5, 0.0), vec3(0.27777778, 0.44444444, 0.27777778));
+
+// The axes of a surface, in which the eye is in the direction `view`, and the normal is z. `stretched` is that
+// direction where facets form half a ball. The lobe is from those axes to about a cosine, and `back` its inverse.
+struct AreaSurface { vec3 view, stretched; mat3 frame, lobe, back; float alpha; };
 
 // A light as a surface sees it: its middle and half axes from there, and its radiance toward it. For a tube `across` is
 // the side that faces the surface, and `arc` the angle from there to its rim.
@@ -25,20 +41,39 @@ struct AreaLight { int kind; vec3 middle, along, across, deep, radiance; float a
 // and `from` and `to` the ends of the last edge above it.
 struct AreaSum { vec3 last, entry, leave, from, to, total; bool enters, leaves; };
 
-// The frames of a surface point in which light is integrated: that of matte and that of shiny reflection.
-AreaSurface area_surface(vec3 normal, vec3 view, float nv, float roughness) {
+// The sum over the pieces of an outline on the cap, as seen from a place `middle` within it; `at` is the place that was
+// reached. The sums are those of the area, and of what is reflected at a reflectance of 0 and of 1 straight on.
+struct AreaCap { vec3 middle, at, sums; };
+
+// The place on the cap of the direction of `to`.
+vec3 area_cap(AreaSurface surface, vec3 to) {
+    vec3 facet = surface.view + normalize(to);
+    facet = normalize(vec3(facet.xy, surface.alpha * facet.z));
+    return 2.0 * dot(facet, surface.stretched) * facet - surface.stretched;
+}
+
+// The matrix that turns directions around the middle of the lobe as the cap turns them.
+mat3 area_lobe(vec3 view, vec3 stretched, float alpha) {
+    vec3 wide = vec3(alpha, alpha, 1.0), facet = normalize(stretched + vec3(0.0, 0.0, 1.0));
+    vec3 tilted = normalize(facet * wide), middle = reflect(-view, tilted), along = vec3(middle.z, 0.0, -middle.x);
+    float facing = dot(facet, stretched), size = length((view + middle) / wide);
+    vec3 turn = along / wide - facet * dot(facet, along / wide);
+    float across = 2.0 * (dot(turn, stretched) * facet.x + facing * turn.x) / size;
+    return transpose(mat3(along * across, vec3(0.0, 2.0 * facing / (alpha * size), 0.0), AREA_WIDE * middle));
+}
+
+// What the integrals need to know of a surface point.
+AreaSurface area_surface(vec3 normal, vec3 view, float nv, float alpha) {
     vec3 side = view - normal * dot(normal, view);
     if (dot(side, side) < 1e-10) side = abs(normal.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0);
     side = normalize(side - normal * dot(normal, side));
-    float last = float(AREA_CELLS - 1);
-    vec2 cell = vec2(roughness, sqrt(1.0 - nv)) * last + 0.5;
-    vec4 parts = cosines_near(cell);
     AreaSurface surface;
     surface.frame = transpose(mat3(side, cross(normal, side), normal));
-    surface.lobe = mat3(parts.x, 0.0, parts.z, 0.0, 1.0, 0.0, parts.y, 0.0, parts.w);
-    surface.back = inverse(surface.lobe * surface.frame);
-    surface.share = cosines_near(cell + vec2(0.0, AREA_CELLS)).x;
-    surface.view = view;
+    surface.alpha = alpha;
+    surface.view = vec3(sqrt(1.0 - nv * nv), 0.0, nv);
+    surface.stretched = normalize(surface.view * vec3(alpha, alpha, 1.0));
+    surface.lobe = area_lobe(surface.view, surface.stretched, alpha);
+    surface.back = inverse(surface.lobe);
     return surface;
 }
 
@@ -90,17 +125,16 @@ bool area_next(inout AreaSum sum, vec3 corner) {
     sum.last = corner;
     if (from.z <= 0.0 && to.z <= 0.0) return false;
     vec3 crossing = mix(from, to, from.z / (from.z - to.z));
-    if (from.z < 0.0) sum.entry = from = crossing, sum.enters = true;
-    if (to.z < 0.0) sum.leave = to = crossing, sum.leaves = true;
+    if (from.z <= 0.0) sum.entry = from = crossing, sum.enters = true;
+    if (to.z <= 0.0) sum.leave = to = crossing, sum.leaves = true;
     sum.total += area_edge(from, to);
     sum.from = from, sum.to = to;
     return true;
 }
 
-// The mean direction of the polygon, with the part of a cosine that it covers as z.
-vec3 area_end(AreaSum sum) {
-    vec3 total = sum.enters && sum.leaves ? sum.total + area_edge(sum.leave, sum.entry) : sum.total;
-    return total.z < 0.0 ? -total : total;
+// The part of a cosine that the polygon covers, below 0 where its corners go around the other way.
+float area_end(AreaSum sum) {
+    return sum.total.z + (sum.enters && sum.leaves ? area_edge(sum.leave, sum.entry).z : 0.0);
 }
 
 // How many corners the outline of a light has.
@@ -108,46 +142,130 @@ int area_corners(AreaLight lamp) {
     return lamp.kind == AREA_RECTANGLE ? 4 : lamp.kind == AREA_DISC ? AREA_RIM : 2 * AREA_ARC;
 }
 
-// A corner of the outline. The corners of a round one lie outside of it, so that both have the same area.
-vec3 area_corner(AreaLight lamp, int corner) {
+// A corner of the outline. The corners of a round one lie outside of it, so that both have the same area, unless they are
+// to lie `on_arc`.
+vec3 area_corner(AreaLight lamp, int corner, bool on_arc) {
     if (lamp.kind == AREA_RECTANGLE) {
         vec2 side = vec2(((corner + 1) & 2) - 1, (corner & 2) - 1);
         return lamp.middle - side.x * lamp.along - side.y * lamp.across;
     }
-    if (lamp.kind == AREA_DISC) {
-        float step = 2.0 * PI / float(AREA_RIM), turn = float(corner) * step;
-        return lamp.middle + sqrt(step / sin(step)) * (cos(turn) * lamp.along + sin(turn) * lamp.across);
-    }
-    int end = corner / AREA_ARC, number = corner - end * AREA_ARC;
-    float side = end == 0 ? 1.0 : -1.0, whole = lamp.far[end] != 0 ? 2.0 * (lamp.arc - PI) : 2.0 * lamp.arc;
-    float edges = float(AREA_ARC - 1), step = whole / edges, turn = side * (float(number) * step - lamp.arc);
-    bool between = number > 0 && number < AREA_ARC - 1;
-    float wide = between ? 1.0 + step * step / 12.0 * edges / (edges - 1.0) : 1.0;
-    return lamp.middle + side * lamp.along + wide * (cos(turn) * lamp.across + sin(turn) * lamp.deep);
+    bool disc = lamp.kind == AREA_DISC;
+    int end = disc ? 0 : corner / AREA_ARC, number = corner - end * AREA_ARC;
+    float side = end == 0 ? 1.0 : -1.0, whole = disc ? 2.0 * PI : lamp.far[end] != 0 ? 2.0 * (lamp.arc - PI) : 2.0 * lamp.arc;
+    float edges = float(disc ? AREA_RIM : AREA_ARC - 1), step = whole / edges;
+    float turn = disc ? float(number) * step : side * (float(number) * step - lamp.arc);
+    float wide = disc ? sqrt(step / sin(step)) : 1.0 + step * step / 12.0 * edges / (edges - 1.0);
+    if (on_arc || !disc && (number == 0 || number == AREA_ARC - 1)) wide = 1.0;
+    vec3 middle = disc ? lamp.middle : lamp.middle + side * lamp.along;
+    return middle + wide * (cos(turn) * (disc ? lamp.along : lamp.across) + sin(turn) * (disc ? lamp.across : lamp.deep));
 }
 
-// Adds a light: the part of the diffuse lobe that it covers, and what is reflected. The horizon cuts the outline first:
-// a lobe near the horizon becomes a cosine that would see below it. Fresnel's term is that of the mean
-// direction in the lobe: its mean over the whole lobe, as in the paper, is twice too bright for small lights.
+// Whether a corner and the two after it lie on one arc of a round light.
+bool area_is_round(AreaLight lamp, int corner) {
+    return lamp.kind == AREA_DISC ? corner + 2 <= AREA_RIM : lamp.kind != AREA_RECTANGLE && corner % AREA_ARC + 2 < AREA_ARC;
+}
+
+// The sine and cosine of half of the area of a triangle of directions, which has a sign, times the same number.
+vec2 area_triangle(vec3 a, vec3 b, vec3 c) {
+    return vec2(dot(a, cross(b - a, c - a)), 1.0 + dot(a, b) + dot(b, c) + dot(c, a));
+}
+
+// What a surface reflects of light from a place on the cap, at a reflectance of 0 and of 1 straight on.
+vec2 area_reflected(AreaSurface surface, vec3 place) {
+    vec3 facet = surface.stretched + place;
+    facet = normalize(vec3(surface.alpha * facet.xy, facet.z));
+    float vh = dot(facet, surface.view), nv = surface.view.z, nl = 2.0 * vh * facet.z - nv;
+    if (nl <= 0.0) return vec2(0.0);
+    vec2 c = vec2(nv, nl), square = c * c + surface.alpha * surface.alpha * (1.0 - c * c), far = sqrt(square);
+    float lit = nl * (nv + far.x) / (nl * far.x + nv * far.y), x = clamp(1.0 - vh, 0.0, 1.0), x2 = x * x;
+    return lit * vec2(x2 * x2 * x, 1.0);
+}
+
+// Adds what lies between the middle and a piece of the outline, which goes over a place `by` on to `to`. The piece is a
+// parabola, which encloses 4 / 3 of a triangle.
+void area_piece(inout AreaCap cap, AreaSurface surface, vec3 by, vec3 to) {
+    vec2 whole = area_triangle(cap.middle, cap.at, to), beyond = area_triangle(cap.at, by, to);
+    float half_size = atan(whole.x, whole.y) + 4.0 / 3.0 * beyond.x / max(beyond.y, 1e-3);
+    cap.at = to;
+    float up = dot(by, cap.middle), height = 1.0 - up;
+    vec3 away = by - up * cap.middle;
+    away *= inversesqrt(max(dot(away, away), 1e-20));
+    int last = height < AREA_FLAT ? 0 : height < AREA_ROUND ? 1 : 2;
+    vec2 mean = vec2(0.0);
+    for (int number = 0; number <= last; ++number) {
+        float down = height * AREA_PLACES[last][number];
+        vec3 place = (1.0 - down) * cap.middle + sqrt(max(down * (2.0 - down), 0.0)) * away;
+        mean += AREA_SHARES[last][number] * area_reflected(surface, place);
+    }
+    cap.sums += half_size * vec3(1.0, mean);
+}
+
+// The cosine of the angle between two directions in the cosine that is about the lobe.
+float area_near(AreaSurface surface, vec3 from, vec3 to) {
+    vec3 a = surface.lobe * from, b = surface.lobe * to;
+    return clamp(dot(a, b) * inversesqrt(dot(a, a) * dot(b, b)), -1.0, 1.0);
+}
+
+// Adds an edge, in pieces, or an arc in one piece that goes over `by`.
+void area_outline(inout AreaCap cap, AreaSurface surface, vec3 from, vec3 by, vec3 to, bool curved, float longest) {
+    float angle = curved ? 0.0 : acos(area_near(surface, from, to)), pieces = max(ceil(angle / longest), 1.0);
+    if (!curved) from /= length(surface.lobe * from), to /= length(surface.lobe * to), by = from + to;
+    float step = angle / pieces;
+    vec3 end = to;
+    for (float piece = 0.0; piece < pieces; ++piece) {
+        vec4 after = step * (piece + vec4(0.5, 0.5, 1.0, 1.0)), turns = vec4(angle, 0.0, angle, 0.0);
+        vec4 parts = sin(abs(turns - after));
+        if (pieces > 1.0) by = parts.x * from + parts.y * to, end = parts.z * from + parts.w * to;
+        area_piece(cap, surface, area_cap(surface, by), area_cap(surface, end));
+    }
+}
+
+// A corner in the axes of a surface, of a polygon that has the area of the light; or the place on its arc.
+vec3 area_seen(AreaLight lamp, AreaSurface surface, int corner, bool on_arc) {
+    return surface.frame * area_corner(lamp, corner % area_corners(lamp), on_arc);
+}
+
+// The sum over the outline above the horizon, from a direction within it. Arcs go over every second corner.
+vec2 area_mirrored(AreaLight lamp, AreaSurface surface, vec3 within) {
+    int corners = area_corners(lamp);
+    AreaSum edges = area_begin(area_seen(lamp, surface, 0, true));
+    AreaCap cap = AreaCap(area_cap(surface, within), area_cap(surface, edges.last), vec3(0.0));
+    for (int number = 0; number < corners;) {
+        bool below = edges.last.z <= 0.0, curved = false;
+        vec3 from = edges.last, by = from, to = area_seen(lamp, surface, number + 1, false);
+        if (area_is_round(lamp, number)) {
+            vec3 middle = area_seen(lamp, surface, number + 1, true), after = area_seen(lamp, surface, number + 2, true);
+            curved = min(from.z, min(middle.z, after.z)) > 0.0 && area_near(surface, from, after) > AREA_STRAIGHT;
+            if (curved) by = middle, to = after;
+        }
+        number += curved ? 2 : 1;
+        if (curved) edges.last = to;
+        else if (area_next(edges, to)) from = edges.from, to = edges.to;
+        else continue;
+        if (below) cap.at = area_cap(surface, from);
+        area_outline(cap, surface, from, by, to, curved, AREA_PIECE);
+    }
+    if (edges.enters && edges.leaves) {
+        cap.at = area_cap(surface, edges.leave);
+        area_outline(cap, surface, edges.leave, edges.entry, edges.entry, false, AREA_LOW_PIECE);
+    }
+    return (cap.sums.x < 0.0 ? -1.0 : 1.0) * cap.sums.yz / (PI * (1.0 + surface.stretched.z));
+}
+
+// Adds a light: the part of a cosine that it covers, and what is mirrored.
 void area_add(AreaLight lamp, AreaSurface surface, vec3 f0, inout vec3 fallen, inout vec3 mirrored) {
     if (lamp.radiance == vec3(0.0)) return;
     int corners = area_corners(lamp);
-    vec3 first = area_corner(lamp, 0);
-    AreaSum matte = area_begin(surface.frame * first), shiny = matte;
-    bool begun = false;
-    vec3 start = vec3(0.0);
-    for (int number = 1; number <= corners; ++number) {
-        bool below = matte.last.z < 0.0;
-        if (!area_next(matte, surface.frame * area_corner(lamp, number == corners ? 0 : number))) continue;
-        if (!begun) shiny = area_begin(surface.lobe * matte.from), start = matte.from, begun = true;
-        else if (below) area_next(shiny, surface.lobe * matte.from);
-        area_next(shiny, surface.lobe * matte.to);
-    }
-    if (!begun) return;
-    area_next(shiny, surface.lobe * start);
-    fallen += lamp.radiance * area_end(matte).z;
-    vec3 lobe = area_end(shiny), way = surface.back * lobe;
-    if (lobe.z <= 0.0) return;
-    vec3 halfway = normalize(surface.view + normalize(way));
-    mirrored += lamp.radiance * fresnel(f0, dot(surface.view, halfway)) * (surface.share * lobe.z);
+    AreaSum edges = area_begin(area_seen(lamp, surface, 0, false));
+    vec3 within = vec3(0.0);
+    for (int number = 1; number <= corners; ++number)
+        if (area_next(edges, area_seen(lamp, surface, number, false)))
+            within += area_edge(surface.lobe * edges.from, surface.lobe * edges.to);
+    if (within == vec3(0.0)) return;
+    if (edges.enters && edges.leaves) within += area_edge(surface.lobe * edges.leave, surface.lobe * edges.entry);
+    float matte = area_end(edges);
+    if (matte == 0.0) return;
+    fallen += lamp.radiance * abs(matte);
+    vec2 parts = area_mirrored(lamp, surface, surface.back * within * sign(matte));
+    mirrored += lamp.radiance * mix(parts.xxx, parts.yyy, f0);
 }

@@ -221,7 +221,7 @@ vec4 deferred_lighting_areas(
         if (!deferred_lighting_part(k, mixed, shares, color, rays, seen, part)) continue;
         LitMaterial material = deferred_lighting_material(part, mapped, metal, roughness, specular, seen, eye);
         LitSurface surface = material.surface;
-        AreaSurface lobes = area_surface(surface.normal, surface.view, surface.nv, sqrt(surface.alpha));
+        AreaSurface lobes = area_surface(surface.normal, surface.view, surface.nv, surface.alpha);
         vec3 fallen = vec3(0.0), mirrored = vec3(0.0);
         for (int light = 0; light < count; ++light)
             area_add(area_light(light, surface.place), lobes, surface.f0, fallen, mirrored);
@@ -253,7 +253,7 @@ vec4 deferred_lighting_limited(
             vec3 through = mask[light] * cookie_color(light, surface.place, pitch);
             fallen += through * matte / PI, mirrored += through * shiny;
         }
-        AreaSurface lobes = area_surface(surface.normal, surface.view, surface.nv, sqrt(surface.alpha));
+        AreaSurface lobes = area_surface(surface.normal, surface.view, surface.nv, surface.alpha);
         for (int light = 0; light < count; ++light) {
             vec3 matte = vec3(0.0), shiny = vec3(0.0);
             area_add(area_light(light, surface.place), lobes, surface.f0, matte, shiny);

@@ -54,35 +54,44 @@ def emitter(light: Light, count: int = 96) -> tuple[Array, Array, Array]:
     return places, ways, areas
 
 
-def floor() -> tuple[Array, Array]:
-    """Places on a floor, and their normals, which are tilted."""
+def floor(tilt: float = 0.12) -> tuple[Array, Array]:
+    """Places on a floor, and their normals, which are tilted, but not away from the eye."""
     width, height = SIZE
     x, y = np.meshgrid(np.linspace(-2.0, 2.0, width), np.linspace(-1.5, 0.9, height))
-    tilt = np.random.default_rng(3).normal(0.0, 0.12, (height, width, 2))
-    return np.dstack([x, y, np.full_like(x, 1e-6)]), unit(np.dstack([tilt, np.ones_like(x)]))
+    places = np.dstack([x, y, np.full_like(x, 1e-6)])
+    random, views = np.random.default_rng(3), unit(EYE - places)
+    normals = np.zeros_like(places)
+    while (unseen := dot(normals, views)[..., 0] < np.cos(np.radians(85.0))).any():
+        tilted = np.dstack([random.normal(0.0, tilt, (height, width, 2)), np.ones_like(x)])
+        normals[unseen] = unit(tilted)[unseen]
+    return places, normals
 
 
-def integrate(light: Light, roughness: float, f0: float) -> tuple[Array, Array]:
+def integrate(
+    light: Light, roughness: float, f0: float, count: int = 96, ground: tuple[Array, Array] | None = None
+) -> tuple[Array, Array]:
     """The diffuse light of white surfaces, and the specular light, for a radiance of 1."""
-    places, ways, areas = emitter(light)
-    grounds, normals = (grid.reshape(-1, 3) for grid in floor())
+    places, ways, areas = emitter(light, count)
+    grounds, normals = (grid.reshape(-1, 3) for grid in ground or floor())
     diffuse, specular = np.zeros(len(grounds)), np.zeros(len(grounds))
-    for number, (ground, normal) in enumerate(zip(grounds, normals, strict=True)):
-        away = places - ground
+    for number, (place, normal) in enumerate(zip(grounds, normals, strict=True)):
+        away = places - place
         square = dot(away, away)
         to = away / np.sqrt(square)
         falling = np.maximum(-dot(to, ways), 0.0) * areas / square * np.maximum(dot(to, normal), 0.0)
-        view = unit(EYE - ground)
+        view = unit(EYE - place)
         vh = dot(view, unit(view + to))
         shine = (f0 + (1.0 - f0) * (1.0 - vh) ** 5) * ggx(normal, view + 0 * to, to, np.array([roughness**2]))
         diffuse[number], specular[number] = falling.sum() / np.pi, (falling * shine).sum()
     return diffuse.reshape(SIZE[::-1]), specular.reshape(SIZE[::-1])
 
 
-def render(run, lights: tuple[Light, ...], output: str, **values: float) -> Array:
-    places, normals = floor()
+def render(
+    run, lights: tuple[Light, ...], output: str, ground: tuple[Array, Array] | None = None, **values: float
+) -> Array:
+    places, normals = ground or floor()
     inputs = {
-        "albedo": np.ones((*SIZE[::-1], 4), np.float32),
+        "albedo": np.ones((*places.shape[:2], 4), np.float32),
         "normal": normals.astype(np.float32),
         "position": places.astype(np.float32),
         "camera": look_at(tuple(EYE), (0.0, 0.0, 0.0), (1.0, 1.0)),
@@ -99,25 +108,54 @@ def test_diffuse_light_is_the_integral_over_the_light(run, name):
     np.testing.assert_allclose(render(run, (light,), "diffuse"), diffuse, atol=1e-2 * diffuse.max())
 
 
-@pytest.mark.parametrize("roughness", [0.2, 0.45, 0.8])
+@pytest.mark.parametrize(("roughness", "count"), [(0.2, 256), (0.45, 96), (0.8, 96)])
 @pytest.mark.parametrize("name", LIGHTS)
-def test_reflections_are_the_integral_over_the_light(run, name, roughness):
-    """To 4e-3 of the light's radiance. Where the horizon cuts a light that is seen at a grazing angle, a transformed
-    cosine is farther from GGX."""
+def test_reflections_are_the_integral_over_the_light(run, name, roughness, count):
+    """To 4e-3 of the light's radiance, and to 1e-2 where the horizon cuts a light."""
     light = LIGHTS[name]
-    _, specular = integrate(light, roughness, 0.04)
+    _, specular = integrate(light, roughness, 0.04, count)
     found = render(run, (light,), "specular_light", roughness=roughness)
-    np.testing.assert_allclose(found, specular, atol=2.2e-2 if "sunken" in name else 4e-3)
+    np.testing.assert_allclose(found, specular, atol=1e-2 if "sunken" in name else 4e-3)
 
 
-@pytest.mark.parametrize(("roughness", "most"), [(0.45, 3.5e-2), (0.8, 1.1e-2)])
+@pytest.mark.parametrize(("roughness", "most"), [(0.45, 1e-2), (0.8, 4e-3), (1.0, 4e-3)])
 @pytest.mark.parametrize("name", LIGHTS)
 def test_metals_reflect_all_light_in_their_color(run, name, roughness, most):
-    """With the table of the paper's fit, errors were up to 0.12 and 0.04."""
     light = LIGHTS[name]
     _, specular = integrate(light, roughness, 1.0)
     found = render(run, (light,), "specular_light", roughness=roughness, metal=1.0)
     np.testing.assert_allclose(found, specular, atol=most)
+
+
+@pytest.mark.parametrize("roughness", [0.35, 0.6])
+def test_metals_at_every_angle(run, roughness):
+    """Surfaces up to 85 degrees from the eye, of which many see a part of a light: 98 of 100 to 1e-2."""
+    ground, errors = floor(1.0), []
+    for light in LIGHTS.values():
+        _, specular = integrate(light, roughness, 1.0, 128, ground)
+        errors.append(render(run, (light,), "specular_light", ground, roughness=roughness, metal=1.0) - specular)
+    assert np.percentile(np.abs(errors), 98) < 1e-2 and np.max(np.abs(errors)) < 5e-2
+
+
+def test_a_far_light_is_bright_wherever_it_is_seen(run):
+    """On the cap it is so small that its middle and its outline are one place to a float."""
+    random = np.random.default_rng(1)
+    normals = unit(np.dstack([random.normal(0.0, 0.4, (60, 80, 2)), np.ones((60, 80))]))
+    ground = np.broadcast_to([0.0, 0.0, 1e-6], normals.shape), normals
+    lit = dot(normals, unit(np.array(LIGHTS["far"].place)))[..., 0] > 0.1
+    light = structs.replace(LIGHTS["far"], width=0.03, height=0.03)
+    found = render(run, (light,), "specular_light", ground, roughness=0.8, metal=1.0)
+    assert lit.sum() > 4000 and (found[lit] > 1e-5).all()
+
+
+def test_a_window_that_stands_on_the_floor(run):
+    """Its lower edge is on the horizon."""
+    light = Light(LightKind.RECTANGLE, (0.0, 1.5, 1.0), (0.0, -1.0, 0.0), width=2.0, height=2.0, intensity=4.0)
+    places, normals = floor()
+    ground = places * [1.0, 1.0, 0.0], 0.0 * normals + [0.0, 0.0, 1.0]
+    diffuse, specular = integrate(light, 0.5, 0.04, ground=ground)
+    np.testing.assert_allclose(render(run, (light,), "diffuse", ground), diffuse, atol=1e-3)
+    np.testing.assert_allclose(render(run, (light,), "specular_light", ground, roughness=0.5), specular, atol=2e-3)
 
 
 def test_light_adds_up_over_lights_of_all_kinds(run):
