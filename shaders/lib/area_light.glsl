@@ -18,7 +18,7 @@ const int AREA_RIM = 16;                      // corners of a disc: with its are
 const int AREA_ARC = 9;                       // corners at each end of a tube
 // The longest piece of an edge, in the cosine that is about the lobe, and that on the horizon, along which the outline
 // turns quickly. Choices between time and error, as are those below: with pi / 4, one in a hundred lights that the
-// horizon cuts is off by 0.018 of its radiance, with pi / 6 by 0.012.
+// horizon cuts is off by 0.018 of its radiance, with pi / 6 by 0.014.
 const float AREA_PIECE = PI / 6.0, AREA_LOW_PIECE = PI / 12.0;
 const float AREA_STRAIGHT = 0.866;  // the cosine of that longest piece
 // Heights of parts of the cap, up to which one place stands for the way from the middle to the edge, or two.
