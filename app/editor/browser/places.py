@@ -5,11 +5,13 @@ from __future__ import annotations
 import os
 import string
 import sys
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator
 from pathlib import Path
 from typing import Literal
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from ...language.translation import mark, translate
 
@@ -27,12 +29,22 @@ class Place(Struct, frozen=True):
 
 
 def places(document: Path | None, recent: Iterable[Path], used: Iterable[Path]) -> tuple[Place, ...]:
-    """The document's folder, home, folders of recent files and of last use, drives; each once, only what is there."""
+    """The document's folder, home, folders of recent files and of last use, drives; each once, only what is there.
+
+    Recent folders of one name also have that of the folder that they are in.
+    """
     by_path: dict[Path, Place] = {}
     for place in _candidates(document, recent, used):
         if place.path not in by_path and os.path.isdir(place.path):  # noqa: PTH112 - False for what no system allows
             by_path[place.path] = place
-    return tuple(sorted(by_path.values(), key=lambda place: place.kind == "drive"))
+    titles = Counter(place.title for place in by_path.values())
+    found = (_tell_apart(place) if titles[place.title] > 1 else place for place in by_path.values())
+    return tuple(sorted(found, key=lambda place: place.kind == "drive"))
+
+
+def _tell_apart(place: Place) -> Place:
+    around = place.path.parent
+    return replace(place, title=f"{place.title} ({around.name or around})") if place.kind == "recent" else place
 
 
 def _candidates(document: Path | None, recent: Iterable[Path], used: Iterable[Path]) -> Iterator[Place]:

@@ -111,6 +111,15 @@ def test_places(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert [one.kind for one in found][-1] == "drive"
 
 
+def test_recent_folders_of_one_name_are_told_apart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    folders = [tmp_path / "monday" / "comp", tmp_path / "friday" / "comp", tmp_path / "plates"]
+    for folder in folders:
+        folder.mkdir(parents=True)
+    titles = [one.title for one in places(None, folders, []) if one.kind == "recent"]
+    assert titles == ["comp (monday)", "comp (friday)", "plates"]
+
+
 def test_drives(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.platform", "linux")
     table = tmp_path / "mounts"
