@@ -8,6 +8,7 @@ import time
 from pathlib import Path
 
 import pytest
+import watchfiles
 from halation import document
 from halation.graph import Graph, Group, Input, Port
 from halation.nodes import catalogue
@@ -24,7 +25,7 @@ def watcher(request, monkeypatch):
         def refuse(*paths, **options):
             raise OSError("OS file watch limit reached")
 
-        monkeypatch.setattr(watching, "watch", refuse)
+        monkeypatch.setattr(watchfiles, "watch", refuse)
         monkeypatch.setattr(watching, "_POLL_SECONDS", 0.1)
     made = FileWatcher(sandbox=UNRESTRICTED)
     yield made
