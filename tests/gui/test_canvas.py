@@ -140,6 +140,22 @@ def test_a_choice_and_a_switch_on_nodes(gui) -> None:
     gui(body)
 
 
+def test_what_is_arranged_is_in_view(gui) -> None:
+    def body(ui) -> None:
+        show(ui, chain("exposure", "saturation", "clip"))
+        ui.editor.canvas.center = (ui.editor.canvas.center[0] + 2000.0, ui.editor.canvas.center[1] - 900.0)
+        ui.session.select([])
+        ui.move(empty(ui))
+        ui.keys("L")
+        ui.wait(4)
+        left, top, right, bottom = ui.editor.places["Graph"]
+        for node in ui.session.graph.nodes:
+            x, y = ui.at(f"title {node}")
+            assert left < x < right and top < y < bottom
+
+    gui(body)
+
+
 def test_the_keyboard_reaches_a_frame(gui) -> None:
     def body(ui) -> None:
         show(ui, chain("exposure", "saturation"))

@@ -20,6 +20,7 @@ from ...authoring.commands import (
     ToggleMute,
     Ungroup,
 )
+from ...authoring.edits.elements import list_elements
 from ...graph import Group
 from ...language.translation import translate
 from ..shared.action import Action
@@ -107,6 +108,13 @@ def _make_tool_act(tool: Tool) -> Callable[[CanvasContext], object]:
         context.canvas.tool = tool
 
     return set_tool
+
+
+def _arrange(context: CanvasContext) -> None:
+    """Lay out the selection, or everything, and bring it into view."""
+    session = context.session
+    session.apply(ArrangeElements(reserve_pictures(context), context.canvas.find_pins()))
+    context.canvas.reveal(session.selection or list_elements(session.graph))
 
 
 def _make_align_action(side: str, label: str) -> Action[CanvasContext]:
@@ -324,7 +332,7 @@ GRAPH: tuple[Action[CanvasContext], ...] = (
     Action(
         "layout.arrange",
         "Arrange",
-        lambda context: context.session.apply(ArrangeElements(reserve_pictures(context), context.canvas.find_pins())),
+        _arrange,
         "Graph",
         "L",
         "graph",
