@@ -67,9 +67,9 @@ class FrameUpdater:
         self._reported: set[str] = set()
         self._seconds_over_budget = 0
         self.is_working = False
+        """True while there is more to compute."""
         self._ready_at = 0.0
         """When no picture waited for a file, last."""
-        """True while there is more to compute."""
 
     def update(self) -> None:
         """Do the work of one frame."""
