@@ -119,6 +119,7 @@ class _DrawnList(Struct):
     def take_from(self, equal: _DrawnList) -> None:
         """Take what was found out about a list that draws the same."""
         self._rows, self._boxes, self._covers = equal._rows, equal._boxes, equal._covers
+        self._extent = equal._extent
 
 
 class WindowPainter:
