@@ -236,6 +236,7 @@ def test_a_picture_is_opened_in_a_new_graph_with_a_reader(gui, shot: Path) -> No
         assert node.id == "read_image" and node.path.endswith("render.exr")
         assert ui.session.graph.links[Port("outputs", "image")].node == id
         assert ui.session.path is None and not ui.session.dirty and ui.session.name == "render"
+        assert ui.session.selection == {id}
         image = ui.editor.preview.find_whole_image("A")
         assert ui.ask(lambda: ui.editor.probe.read_pixel(image.texture, 3, 3)[0]) == pytest.approx(0.5, abs=1e-3)
         assert "start" not in ui.editor.dialogs.open

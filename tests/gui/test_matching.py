@@ -9,6 +9,8 @@ import halation as hal
 import numpy as np
 import pytest
 from gui_driver import Ui
+from halation.authoring.commands import AddNode
+from halation.authoring.edits.element_id import ElementId
 from halation.graph import Port
 from imgui_bundle import imgui
 
@@ -124,3 +126,34 @@ def find_bottom() -> float:
     """The lower border of the window."""
     window = next(window for window in imgui.get_current_context().windows if window.name.endswith("###match"))
     return window.pos.y + window.size.y
+
+
+def test_escape_closes_the_window_but_not_out_of_a_field(gui, reference) -> None:
+    def body(ui: Ui) -> None:
+        open_match(ui, reference[1], "expose.stops")
+        ui.click("match values")
+        ui.keys("Escape")  # leaves the field
+        ui.wait(2)
+        assert ui.editor.dialogs.matches
+        ui.click("match way")
+        ui.wait(2)
+        ui.keys("Escape")  # closes the list
+        ui.wait(2)
+        assert ui.editor.dialogs.matches
+        ui.keys("Escape")
+        ui.wait(2)
+        assert not ui.editor.dialogs.matches
+
+    gui(body, reference[0])
+
+
+def test_a_selected_node_without_numbers_is_not_proposed(gui, reference) -> None:
+    def body(ui: Ui) -> None:
+        ui.settled()
+        luminance = ui.session.apply(AddNode("unpremultiply"))
+        ui.session.select([ElementId(luminance)])
+        ui.window._contexts.dialogs.actions.run("file.match")
+        ui.wait(4)
+        assert ui.window._overlays["Match"]._patterns == "*.*"
+
+    gui(body, reference[0])

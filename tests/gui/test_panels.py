@@ -212,6 +212,25 @@ def test_messages_make_room_for_the_search(gui) -> None:
     gui(body, PRESET)
 
 
+def test_messages_cover_no_button_of_a_dialog(gui) -> None:
+    def body(ui) -> None:
+        ui.editor.log.add("saved", "info")
+        ui.wait(3)
+        before = ui.editor.places["toast 0"]
+        ui.keys("Shift+F1")  # nearly as wide as the window
+        ui.wait(3)
+        assert "toast 0" not in ui.editor.places
+        ui.editor.log.add("the disk is full", "error")
+        ui.wait(3)
+        assert "toast 0" in ui.editor.places and "toast 1" not in ui.editor.places
+        ui.editor.log.entries.pop()
+        ui.keys("Escape")
+        ui.wait(3)
+        assert ui.editor.places["toast 0"] == before
+
+    gui(body, PRESET)
+
+
 def test_messages_show_up_and_go_at_a_click(gui) -> None:
     def body(ui) -> None:
         ui.editor.log.add("the first", "warning")

@@ -45,3 +45,28 @@ def test_lines_are_typed_and_the_anchor_is_dragged(gui, tmp_path: Path) -> None:
         ui.shot("text_editing.png")
 
     gui(body, save_graph(tmp_path))
+
+
+def test_keys_of_the_window_work_in_a_text_field_and_what_was_typed_counts(gui, tmp_path: Path) -> None:
+    def body(ui: Ui) -> None:
+        ui.session.select([ElementId("title")])
+        ui.settled()
+        ui.reveal("field title.text")
+        ui.click("field title.text")
+        ui.type("Three", enter=False)
+        ui.keys("Ctrl+N")
+        ui.until(lambda: ui.editor.dialogs.question is not None)  # about what is not saved
+        assert ui.session.graph.value(Port("title", "text")) == "Three"
+        ui.keys("Escape")
+        ui.wait(2)
+        ui.click("field title.text")
+        steps = ui.session.history.steps
+        ui.keys("Ctrl+A")  # all of the text, not all nodes
+        ui.keys("Ctrl+X")
+        ui.wait(3)
+        assert ui.session.history.steps == steps and "title" in ui.session.graph.nodes
+        ui.keys("F12")
+        ui.wait(6)
+        assert "Renders" in ui.editor.places
+
+    gui(body, save_graph(tmp_path))

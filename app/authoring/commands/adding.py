@@ -14,7 +14,7 @@ from ...graph import Graph, Group, Item, Port, did_you_mean, signature
 from ...language.translation import translate
 from ...render_layers.render import is_render
 from ...watch.sequence_files import representative_file
-from ..edits import appending, coding, elements, layout, naming, paths, room, routes, wiring
+from ..edits import appending, coding, elements, layout, naming, paths, room, routes, surface_layers, wiring
 from ..edits.element_id import ElementId
 from ..edits.elements import Place, Sizes
 from ..edits.ends import without_samples
@@ -83,7 +83,7 @@ class AppendNode(EditCommand[str], frozen=True):
         edited = self.addition.apply(document)
         assert edited.graph is not None
         selected = sorted(document.selection, key=lambda element: (element != document.active, element))
-        absent = list_absent_outputs(document, selected)
+        absent = list_absent_outputs(document, surface_layers.list_behind(document.graph, selected))
         graph = appending.append_node(edited.graph, edited.outcome, selected, self.sizes, absent)
         follows = _list_followed(graph, edited.outcome)
         return Edited(edited.label, edited.outcome, graph, (ElementId(edited.outcome),), follows=follows)

@@ -10,6 +10,7 @@ from .element_id import ElementId
 from .elements import Place, Sizes, entry, list_elements, with_places
 from .layout import GAP, find_free_place, positions
 from .sizes import element_size
+from .surface_layers import connect_layers
 from .wiring import first_source, why_not_linkable
 
 _HEADER, _ROW, _PICTURE, _MOST_FIELDS = 32.0, 24.0, 116.0, 5
@@ -43,19 +44,25 @@ def append_node(
 ) -> Graph:
     """A graph where node `id`, which has no links, is fed by the first socket of each element that fits one of its own.
 
-    It lies right of the first of them in free room. Where that fed nothing but outputs of the graph, the new node
-    stands between: the picture that comes out is that of the longer chain. Where nothing feeds an output of the graph,
-    the node does. Without feeders that fit, it only moves away from what it would cover.
+    Layers of a render that it has sockets for come from behind the feeders, too. It lies right of the first of them in
+    free room. Where that fed nothing but outputs of the graph, the new node stands between: the picture that comes out
+    is that of the longer chain. Where nothing feeds an output of the graph, the node does. Without feeders that fit, it
+    only moves away from what it would cover.
     """
-    sources: list[Port] = []
+    feeders = list(feeders)
     for element in feeders:
-        before = graph.links
-        graph = _feed(graph, element, id, absent)
-        sources += [source for target, source in graph.links.items() if target not in before]
-    if sources:
-        graph = _move_outputs_behind(graph, sources[0], id)
+        graph = connect_alike(graph, element, id, absent)
+    fed = {source.node for target, source in graph.links.items() if target.node == id}
+    graph = connect_layers(graph, id, feeders, absent)
+    for element in feeders:
+        graph = graph if element in fed else _feed_first(graph, element, id, absent)
+    sources = [source for target, source in graph.links.items() if target.node == id]
+    direct = next((source for element in feeders for source in sources if ElementId.of_port(source) == element), None)
+    if direct is not None:
+        graph = _move_outputs_behind(graph, direct, id)
     graph = _feed_first_output(graph, id)
-    return _place_node(graph, ElementId(id), sources, sizes)
+    behind = ElementId.of_port(direct) if direct is not None else feeders[0] if sources else None
+    return _place_node(graph, ElementId(id), behind, sizes)
 
 
 def feed_element(graph: Graph, target: ElementId, feeders: Iterable[ElementId], absent: Collection[Port] = ()) -> Graph:
@@ -91,10 +98,13 @@ def _estimate_size(graph: Graph, element: ElementId) -> tuple[float, float]:
 
 def _feed(graph: Graph, element: ElementId, id: str, absent: Collection[Port]) -> Graph:
     """A graph where an element feeds a node: by sockets of the same name, else by its first output that fits."""
+    alike = connect_alike(graph, element, id, absent)
+    return alike if alike is not graph else _feed_first(graph, element, id, absent)
+
+
+def _feed_first(graph: Graph, element: ElementId, id: str, absent: Collection[Port]) -> Graph:
+    """A graph where the first output of an element that fits feeds a node."""
     if element in graph.nodes:
-        alike = connect_alike(graph, element, id, absent)
-        if alike is not graph:
-            return alike
         ports = (Port(element, name) for name in signature(graph.nodes[element]).outputs)
         outputs = [port for port in ports if port not in absent]
     else:
@@ -140,15 +150,14 @@ def _feed_first_output(graph: Graph, id: str) -> Graph:
     return graph
 
 
-def _place_node(graph: Graph, node: ElementId, sources: list[Port], sizes: Sizes | None) -> Graph:
-    """A graph where a new node lies in free room: right of what feeds it first, else where it was put."""
+def _place_node(graph: Graph, node: ElementId, behind: ElementId | None, sizes: Sizes | None) -> Graph:
+    """A graph where a new node lies in free room: right of the element `behind`, else where it was put."""
     measured = estimate_sizes(graph, sizes)
     places = positions(graph, measured)
     spot: Place = places.pop(node)
     readers = [target for target, start in graph.links.items() if start.node == node]
-    if sources:
-        feeder = ElementId.of_port(sources[0])
-        spot = places[feeder][0] + element_size(graph, feeder, measured)[0] + GAP[0], places[feeder][1]
+    if behind is not None:
+        spot = places[behind][0] + element_size(graph, behind, measured)[0] + GAP[0], places[behind][1]
     # The outputs that it feeds now give way to the right; everything else stays where it is.
     ends = dict.fromkeys(ElementId.of_port(target) for target in readers)
     spots = {end: places.pop(end) for end in ends}

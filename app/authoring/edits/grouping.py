@@ -9,7 +9,7 @@ from halation.nodes import Kind, Socket, Value
 from msgspec import Struct, field
 
 from ...errors import GraphError
-from ...graph import INPUTS, OUTPUTS, Control, Graph, Group, Input, Output, Port, Settings
+from ...graph import INPUTS, OUTPUTS, Control, Graph, Group, Input, Output, Port, Settings, signature
 from ...graph.names import check_name, fresh_name
 from ...graph.notes import keys_of_nodes
 from ...language.translation import translate
@@ -39,7 +39,8 @@ def make_group(graph: Graph, chosen: Collection[ElementId], name: str = "") -> t
     """A graph where the chosen nodes and decor are a group, and its id.
 
     Every source outside that feeds chosen nodes becomes an input, every output of theirs that is read outside an
-    output, named after the sockets. Controls go on working. Raises GraphError where the group would feed itself.
+    output, named after the sockets; where nothing is read outside, the first output of each node at an end becomes one.
+    Controls go on working. Raises GraphError where the group would feed itself.
     """
     ids = [id for id in graph.nodes if id in chosen]
     if not ids:
@@ -114,7 +115,19 @@ def _find_crossings(graph: Graph, ids: set[str]) -> _Crossing:
             name = fresh_name(source.socket, crossing.outputs)
             crossing.outputs[name] = Output(*_kind(graph, source, target))
             crossing.leaving[source] = name
+    if not crossing.leaving:
+        _add_ends(graph, ids, crossing)
     return crossing
+
+
+def _add_ends(graph: Graph, ids: set[str], crossing: _Crossing) -> None:
+    """Outputs for the nodes that feed nothing, so that a group that nobody reads yet has something to give."""
+    feeding = {start.node for start in graph.links.values()}
+    for id in sorted(ids - feeding):
+        for name, socket in list(signature(graph.nodes[id]).outputs.items())[:1]:
+            output = fresh_name(name, crossing.outputs)
+            crossing.outputs[output] = Output(socket.kind, socket.channels)
+            crossing.leaving[Port(id, name)] = output
 
 
 def _vertical_order(graph: Graph, target: Port) -> tuple[float, float, Port]:

@@ -59,7 +59,7 @@ class DocumentFiles:
         self._restart(root, saved=root)
 
     def open_pictures(self, files: Sequence[str | Path]) -> None:
-        """Begin a new document with nodes that read pictures, the first of which feeds the output.
+        """Begin a new document with nodes that read pictures; the first one feeds the output and is selected.
 
         Raises HalationError; then everything is as before.
         """
@@ -71,6 +71,7 @@ class DocumentFiles:
         blank.apply(Connect(Port(ids[0], output), _OUTPUT))
         blank.apply(MoveElements([ElementId.of_port(_OUTPUT)], 2 * WIDTH, 0.0))
         self._restart(blank.root, saved=blank.root, title=Path(files[0]).stem)
+        session.select(ElementId.of("node", ids[0]))
 
     def open_graph_of_picture(self, path: str | Path) -> None:
         """Open the graph that rendered a picture, as a new document with the picture's name. Raises HalationError."""

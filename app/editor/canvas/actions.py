@@ -20,7 +20,7 @@ from ...authoring.commands import (
     ToggleMute,
     Ungroup,
 )
-from ...authoring.edits.elements import list_elements
+from ...authoring.edits.elements import can_be_linked
 from ...graph import Group
 from ...language.translation import translate
 from ..shared.action import Action
@@ -111,10 +111,14 @@ def _make_tool_act(tool: Tool) -> Callable[[CanvasContext], object]:
 
 
 def _arrange(context: CanvasContext) -> None:
-    """Lay out the selection, or everything, and bring it into view."""
+    """Lay out the selection and bring it into view, or lay everything out and show all of it."""
     session = context.session
     session.apply(ArrangeElements(reserve_pictures(context), context.canvas.find_pins()))
-    context.canvas.reveal(session.selection or list_elements(session.graph))
+    arranged = [element for element in session.selection if can_be_linked(element, session.graph)]
+    if len(arranged) > 1:
+        context.canvas.reveal(arranged)
+    else:
+        context.canvas.fit()
 
 
 def _make_align_action(side: str, label: str) -> Action[CanvasContext]:

@@ -113,6 +113,7 @@ class CodePanel:
             for key in (imgui.Key.enter, imgui.Key.keypad_enter):
                 imgui.internal.set_key_owner(key, _OURS, _FOR_THIS_FRAME)
         if imgui.is_key_chord_pressed(chord("Ctrl+S")):
+            imgui.internal.set_key_owner(imgui.Key.s, _OURS, _FOR_THIS_FRAME)
             page.commit()
             page.end_burst()
             self._save(page, code)

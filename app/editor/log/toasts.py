@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from .context import LogContext
 
 _WIDTH, _GAP, _BELOW, _MOST, _FADE = 360.0, 8.0, 34.0, 5, 0.6
+_LEAST = 32.0
+"""The height of a toast of one line, which is known before the first one is drawn."""
 _TOAST = (
     FIXED
     | int(imgui.WindowFlags_.no_decoration)
@@ -27,7 +29,8 @@ _TOAST = (
 class Toasts:
     """The newest messages, stacked upwards from the bottom right; each fades after a while, or after a click.
 
-    They go to the left where a menu or a search would lie below them.
+    They go to the left where a menu, a search or a dialog would lie below them. If that fills the window, only errors
+    are shown: no button is covered, and the log has the rest.
     """
 
     def __init__(self, context: LogContext) -> None:
@@ -42,8 +45,13 @@ class Toasts:
         self._dismissed &= {entry.at for entry in self._context.log.toasts()}
         view, scale = imgui.get_main_viewport(), ui_scale()
         right, bottom = view.pos.x + view.size.x - 12 * scale, view.pos.y + view.size.y - _BELOW * scale
-        if entries and _reaches_popup(right - _WIDTH * scale, bottom - self._height):
-            right = view.pos.x + (12 + _WIDTH) * scale
+        room = _WIDTH * scale, max(self._height, _LEAST * scale)
+        if entries and self._covers(right - room[0], bottom - room[1], right):
+            left = view.pos.x + 12 * scale
+            if self._covers(left, bottom - room[1], left + room[0]):
+                entries = [entry for entry in entries if entry.level == "error"]
+            else:
+                right = left + room[0]
         top = bottom
         for index, entry in enumerate(reversed(entries)):
             top -= self._draw_toast(entry, index, ImVec2(right, top)) + _GAP * scale
@@ -78,12 +86,13 @@ class Toasts:
         imgui.pop_style_var(2)
         return extent.y
 
-
-def _reaches_popup(left: float, top: float) -> bool:
-    """True if an open menu or search goes beyond a point to the right and below."""
-    windows = [popup.window for popup in imgui.get_current_context().open_popup_stack]
-    return any(
-        window.pos.x + window.size.x > left and window.pos.y + window.size.y > top
-        for window in windows
-        if window is not None
-    )
+    def _covers(self, left: float, top: float, right: float) -> bool:
+        """True if an open dialog, menu or search reaches into a strip above the bottom of the window."""
+        popups = [popup.window for popup in imgui.get_current_context().open_popup_stack]
+        boxes = [
+            (low.x, low.x + size.x, low.y + size.y)
+            for low, size in ((window.pos, window.size) for window in popups if window is not None)
+        ]
+        places = self._context.places.items()
+        boxes += [(box[0], box[2], box[3]) for name, box in places if name.startswith("dialog ")]
+        return any(low < right and high > left and bottom > top for low, high, bottom in boxes)

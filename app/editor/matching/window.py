@@ -16,6 +16,7 @@ from ...language.translation import mark, translate, translate_plural
 from ..shared.dialogs import Browse
 from ..theme.style import ui_scale
 from ..toolkit.buttons import main_button
+from ..toolkit.dialogs import escape_pressed, note_lists
 from ..toolkit.fields import combo, label, measure_labels
 from ..toolkit.labels import make_label, translate_label
 from ..toolkit.places import record
@@ -70,8 +71,10 @@ class MatchWindow:
         else:
             self._draw_choices()
         self._stay_above(corner.y)
+        is_left = escape_pressed() and not imgui.get_io().want_text_input
+        note_lists()
         imgui.end()
-        dialogs.matches = bool(is_open) and dialogs.matches
+        dialogs.matches = bool(is_open) and not is_left and dialogs.matches
 
     def _stay_above(self, bottom: float) -> None:
         """Move the window up when it grew beyond where it began; the user may move it anywhere."""
@@ -83,9 +86,10 @@ class MatchWindow:
     # --- before ------------------------------------------------------------------------------------------------------
 
     def _suggest_patterns(self) -> str:
-        """The values of the selected nodes; without any the controls, else all values."""
+        """The values of those selected nodes that have some; without any the controls, else all values."""
         session = self._context.session
-        chosen = [f"{id}.*" for id in session.root.nodes if id in session.selection]
+        patterns = [f"{id}.*" for id in session.root.nodes if id in session.selection]
+        chosen = [pattern for pattern in patterns if self._search.count_numbers(pattern)[0]]
         return ", ".join(chosen or session.root.controls) or "*.*"
 
     def _draw_choices(self) -> None:

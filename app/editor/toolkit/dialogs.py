@@ -74,8 +74,13 @@ def dialog(
     yield
     corner, extent = imgui.get_window_pos(), imgui.get_window_size()
     surface.places[f"dialog {title}"] = (corner.x, corner.y, corner.x + extent.x, corner.y + extent.y)
-    imgui.get_state_storage().set_bool(_HAD_POPUP, imgui.is_popup_open("", int(imgui.PopupFlags_.any_popup)))
+    note_lists()
     imgui.end()
+
+
+def note_lists() -> None:
+    """Note at the end of a dialog whether a list is open in it, for `escape_pressed`."""
+    imgui.get_state_storage().set_bool(_HAD_POPUP, imgui.is_popup_open("", int(imgui.PopupFlags_.any_popup)))
 
 
 def enter_pressed() -> bool:

@@ -29,6 +29,8 @@ class Editor(Services):
     timeline: TimelineState = field(default_factory=TimelineState)
     scope: Scope = "graph"
     """The panel whose shortcuts work: the last one under the mouse."""
+    waiting_action: str = ""
+    """An action whose keys were pressed in a text field: it runs when the field has given up the keyboard."""
 
     @property
     def places(self) -> dict[str, Rect]:

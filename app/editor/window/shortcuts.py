@@ -21,10 +21,19 @@ def note_scope(editor: Editor) -> None:
 
 
 def run_shortcuts(editor: Editor) -> None:
-    """Run the actions of the keys that were pressed in this frame; keys in a text field run none."""
+    """Run the actions of the keys that were pressed in this frame.
+
+    In a text field only those of the whole window run whose keys no text takes, such as `Ctrl+N`, one frame later: the
+    field gives up the keyboard first, and what was typed counts.
+    """
     if editor.dialogs.any or imgui.get_io().want_text_input or imgui.is_popup_open("", _ANY_POPUP):
         editor.timeline.tapped = False
+        if not editor.dialogs.any and not imgui.is_popup_open("", _ANY_POPUP):
+            _note_shortcut_in_text(editor)
         return
+    if waiting := editor.waiting_action:
+        editor.waiting_action = ""
+        editor.actions.run(waiting)
     if imgui.is_key_pressed(imgui.Key.space, False):
         editor.timeline.tapped = not imgui.get_io().key_mods
     for button in range(3):
@@ -36,6 +45,22 @@ def run_shortcuts(editor: Editor) -> None:
             has_run = True
     for key in _TAKEN:
         imgui.internal.set_key_owner(key, _OURS)
+
+
+def _note_shortcut_in_text(editor: Editor) -> None:
+    for action, text in editor.actions.list_shortcuts(""):
+        if _is_free_in_text(text) and imgui.shortcut(chord(text), _ROUTE):
+            imgui.internal.clear_active_id()
+            editor.waiting_action = action.id
+            return
+
+
+def _is_free_in_text(text: str) -> bool:
+    """True for function keys, and for `Ctrl` with a key that text fields have no use for."""
+    keys = chord(text)
+    key = imgui.Key(keys & ~_MODIFIERS)
+    is_function = int(imgui.Key.f1) <= key <= int(imgui.Key.f24)
+    return is_function or (bool(keys & int(imgui.Key.mod_ctrl)) and key not in _OF_TEXT)
 
 
 def _is_pressed(editor: Editor, text: str, repeats: bool) -> bool:
@@ -80,6 +105,14 @@ _WITH_SCOPES = (None, *_SCOPES)
 
 _TAKEN = (imgui.Key.space, imgui.Key.left_arrow, imgui.Key.right_arrow, imgui.Key.up_arrow, imgui.Key.down_arrow)
 """Keys that the library would use for buttons, if actions did not take them."""
+
+_OF_TEXT = (
+    *(imgui.Key.a, imgui.Key.c, imgui.Key.v, imgui.Key.x, imgui.Key.y, imgui.Key.z),
+    *(imgui.Key.space, imgui.Key.tab, imgui.Key.enter, imgui.Key.keypad_enter, imgui.Key.insert),
+    *(imgui.Key.backspace, imgui.Key.delete, imgui.Key.home, imgui.Key.end, imgui.Key.page_up, imgui.Key.page_down),
+    *(imgui.Key.left_arrow, imgui.Key.right_arrow, imgui.Key.up_arrow, imgui.Key.down_arrow),
+)
+"""Keys that edit text, or move in it, together with Ctrl."""
 
 _OURS = 0x48414C41
 """The id under which the window owns keys: "HALA" in ASCII."""

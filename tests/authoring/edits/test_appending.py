@@ -7,12 +7,21 @@ from pathlib import Path
 
 import pytest
 from halation import presets
-from halation.authoring.commands import AddNode, AppendNode, Connect, ConnectNodes, DropFiles, MakeGroup
+from halation.authoring.commands import (
+    AddNode,
+    AppendNode,
+    Connect,
+    ConnectNodes,
+    DropFiles,
+    MakeGroup,
+    ReplaceGraph,
+)
 from halation.authoring.edits.element_id import ElementId
 from halation.authoring.edits.layout import positions
 from halation.authoring.session import Session
 from halation.editor.canvas.layout import NodeFacts, make_node_layout
-from halation.graph import Graph, Port
+from halation.graph import Graph, Input, Output, Port
+from halation.nodes import Kind
 from halation.render_layers.render import read_render
 from halation.resources.sandbox import UNRESTRICTED
 
@@ -161,3 +170,49 @@ def test_dropped_files_stand_in_a_column(session: Session, tmp_path: Path) -> No
     assert not find_overlaps(session.graph)
     session.apply(DropFiles(paths, (40.0, 30.0)))
     assert not find_overlaps(session.graph)
+
+
+def feeders_of(session: Session, id: str) -> dict[str, str]:
+    """What feeds each socket of a node."""
+    return {target.socket: str(source) for target, source in session.graph.links.items() if target.node == id}
+
+
+def test_layers_of_a_render_come_from_behind_the_chain(session: Session) -> None:
+    session.files.open_pictures([NEON])
+    (render,) = session.graph.nodes
+    bloom = append(session, "bloom")
+    focus = append(session, "depth_of_field")
+    assert feeders_of(session, focus) == {"image": f"{bloom}.out", "depth": f"{render}.depth"}
+    assert session.graph.links[Port("outputs", "image")] == Port(focus, "out")
+    fog = append(session, "fog")
+    assert feeders_of(session, fog)["image"] == f"{focus}.out"
+    assert {"depth": f"{render}.depth", "camera": f"{render}.camera"}.items() <= feeders_of(session, fog).items()
+    assert session.positions[ElementId(fog)][0] > session.positions[ElementId(focus)][0]
+
+
+def test_a_relight_after_an_occlusion_takes_the_occlusion_and_the_surfaces_behind_it(session: Session) -> None:
+    session.files.open_pictures([NEON])
+    (render,) = session.graph.nodes
+    occlusion = append(session, "ambient_occlusion")
+    relight = append(session, "deferred_lighting")
+    fed = feeders_of(session, relight)
+    assert fed.pop("occlusion") == f"{occlusion}.occlusion"
+    assert fed == {name: f"{render}.{name}" for name in ("albedo", "normal", "depth", "position", "camera", "emission")}
+
+
+def test_no_layer_is_taken_from_behind_a_node_that_moves_pixels(session: Session) -> None:
+    session.files.open_pictures([NEON])
+    append(session, "transform")
+    focus = append(session, "depth_of_field")
+    assert feeders_of(session, focus) == {"image": "transform.out"}
+
+
+def test_inputs_of_the_graph_are_layers_too(session: Session) -> None:
+    inputs = {name: Input(kind) for name, kind in (("image", Kind.IMAGE), ("depth", Kind.FIELD), ("matte", Kind.FIELD))}
+    graph = Graph(inputs=inputs, outputs={"image": Output(Kind.IMAGE)}).add("bloom", session.types["bloom"]())
+    graph = graph.connect(Port("inputs", "image"), Port("bloom", "image"))
+    session.apply(ReplaceGraph("Start", graph))
+    session.select(ElementId("bloom"))
+    assert feeders_of(session, append(session, "depth_of_field")) == {"image": "bloom.out", "depth": "inputs.depth"}
+    # a matte is somebody's choice, no fact of the render
+    assert "matte" not in feeders_of(session, append(session, "set_matte"))

@@ -76,6 +76,17 @@ def test_ends_are_named_and_typed_by_what_crosses_the_border():
     }
 
 
+def test_nodes_that_nobody_reads_yet_become_a_group_with_an_output():
+    graph = Graph(inputs={"a": Input()}, outputs={"image": Output()}).add("soften", Soften()).add("split", Split())
+    graph = graph.connect(port("inputs.a"), port("soften.image")).connect(port("soften.out"), port("split.image"))
+    after, id = make_group(graph, {ElementId("soften"), ElementId("split")})
+    first = next(iter(Split().outputs))
+    assert list(body(after, id).outputs) == [first]
+    assert links(body(after, id))[f"outputs.{first}"] == f"split.{first}"
+    both, _ = make_group(graph.disconnect(port("split.image")), {ElementId("soften"), ElementId("split")})
+    assert len(body(both, "group").outputs) == 2
+
+
 def test_a_group_that_would_feed_itself_is_refused():
     with pytest.raises(GraphError, match=r"would feed itself: 'n1' lies between them"):
         make_group(chain(3), {ElementId("n0"), ElementId("n2")})
