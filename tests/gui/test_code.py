@@ -243,3 +243,15 @@ def test_code_is_added_from_the_list(gui, path) -> None:
         assert ui.session.code_files.find_code("Red_Room").file == "isf/Red Room.fs"
 
     gui(body, path, size=SIZE)
+
+
+def test_keys_of_the_window_work_in_the_code_and_what_was_typed_counts(gui, path) -> None:
+    def body(ui) -> None:
+        begin(ui)
+        ui.ctx.key_chars(" ")
+        ui.keys("Ctrl+P")
+        ui.until(lambda: "palette" in ui.editor.dialogs.open)
+        assert text_of(ui) == " " + GAIN
+        ui.keys("Escape")
+
+    gui(body, path, size=SIZE)

@@ -60,6 +60,10 @@ def _scale(step: float) -> Callable[[ViewSettingsContext], object]:
     return scale
 
 
+def _show_panel(context: ViewSettingsContext, title: PanelTitle) -> None:
+    context.commands.show_panel(title)
+
+
 def _apply_layout(context: ViewSettingsContext, name: LayoutName) -> None:
     context.commands.apply_layout(name)
 
@@ -76,6 +80,21 @@ _LAYOUTS: tuple[tuple[LayoutName, str, str, str], ...] = (
     ("animate", "Animate", "Ctrl+F4", "to set keys"),
     ("review", "Review", "Ctrl+F5", "to look at pictures and renders"),
 )
+
+_PANELS: tuple[tuple[PanelTitle, str], ...] = (
+    (PanelTitle.VIEWER, mark("Show Viewer")),
+    (PanelTitle.GRAPH, mark("Show Graph")),
+    (PanelTitle.ANIMATION, mark("Show Animation")),
+    (PanelTitle.CODE, mark("Show Code")),
+    (PanelTitle.PROBLEMS, mark("Show Problems")),
+    (PanelTitle.RENDERS, mark("Show Renders")),
+    (PanelTitle.LOG, mark("Show Log")),
+    (PanelTitle.INSPECTOR, mark("Show Inspector")),
+    (PanelTitle.SCOPES, mark("Show Scopes")),
+    (PanelTitle.HISTORY, mark("Show History")),
+    (PanelTitle.PASSES, mark("Show Passes")),
+)
+"""What the command palette calls the panels; the menu has a list of them with marks."""
 
 VIEW: tuple[Action[ViewSettingsContext], ...] = (
     Action(
@@ -138,6 +157,15 @@ VIEW: tuple[Action[ViewSettingsContext], ...] = (
             doc=f"Move all panels to where they serve best {purpose}.",
         )
         for name, label, keys, purpose in _LAYOUTS
+    ),
+    *(
+        Action(
+            f"view.panel.{title.lower()}",
+            label,
+            partial(_show_panel, title=title),
+            doc="Show this panel, in front of those in the same place.",
+        )
+        for title, label in _PANELS
     ),
     Action("view.screenshot", "Save a Screenshot...", lambda context: context.commands.save_screenshot(), "View"),
     Action("help.palette", "Command Palette...", lambda context: context.dialogs.open.add("palette"), "Help", "Ctrl+P"),

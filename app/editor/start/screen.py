@@ -80,7 +80,7 @@ class StartScreen:
 
     def _run_shortcuts(self) -> None:
         """Run the shortcuts that work on the start screen."""
-        for id in ("file.new", "file.open", "file.open_render", "file.quit", "help.shortcuts"):
+        for id in ("file.new", "file.open", "file.open_render", "file.quit", "help.shortcuts", "help.palette"):
             keys = self._context.actions.shortcut(id)
             if keys and imgui.is_key_chord_pressed(chord(keys)):
                 self._context.actions.run(id)

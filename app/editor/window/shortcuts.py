@@ -26,14 +26,15 @@ def run_shortcuts(editor: Editor) -> None:
     In a text field only those of the whole window run whose keys no text takes, such as `Ctrl+N`, one frame later: the
     field gives up the keyboard first, and what was typed counts.
     """
+    if waiting := editor.waiting_action:
+        editor.waiting_action = ""
+        editor.code.flush()
+        editor.actions.run(waiting)
     if editor.dialogs.any or imgui.get_io().want_text_input or imgui.is_popup_open("", _ANY_POPUP):
         editor.timeline.tapped = False
         if not editor.dialogs.any and not imgui.is_popup_open("", _ANY_POPUP):
             _note_shortcut_in_text(editor)
         return
-    if waiting := editor.waiting_action:
-        editor.waiting_action = ""
-        editor.actions.run(waiting)
     if imgui.is_key_pressed(imgui.Key.space, False):
         editor.timeline.tapped = not imgui.get_io().key_mods
     for button in range(3):
