@@ -8,6 +8,7 @@ import pytest
 from gui_driver import Ui
 from halation import presets
 from halation.authoring.edits.element_id import ElementId
+from halation.editor.shared.window_commands import PanelTitle
 from halation.editor.tutorials.coach import READABLE_ZOOM, Coach, find_noted, fit_frame, place_card
 from halation.editor.tutorials.course import COURSE
 from halation.editor.tutorials.lessons import LESSONS
@@ -312,5 +313,16 @@ def test_a_lesson_that_is_not_solved_is_not_finished(gui) -> None:
         while progress.lesson is not None:
             ui.click("tutorial next")
         assert not ui.editor.store.current.lessons
+
+    gui(body)
+
+
+def test_a_lesson_brings_the_graph_to_the_front(gui) -> None:
+    def body(ui: Ui) -> None:
+        ui.settled()
+        ui.editor.commands.show_panel(PanelTitle.CODE)
+        ui.until(lambda: "Graph" not in ui.editor.places)
+        open_lesson(ui, "first_look")
+        ui.until(lambda: "Graph" in ui.editor.places and "title bloom" in ui.editor.places)
 
     gui(body)

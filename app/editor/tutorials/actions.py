@@ -14,7 +14,12 @@ from .lessons import LESSONS
 
 def open_lesson(context: TutorialContext, lesson: Lesson) -> None:
     """Open the document that a lesson begins with, after asking about unsaved work, and show its first step."""
-    begin, documents = partial(context.progress.begin, lesson), context.documents
+
+    def begin() -> None:
+        context.session.select(())  # a first step may ask for it
+        context.progress.begin(lesson)
+
+    documents = context.documents
     (documents.open_picture if is_picture(lesson.start_file) else documents.open_preset)(lesson.start_file, begin)
 
 

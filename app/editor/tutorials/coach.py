@@ -61,6 +61,8 @@ class Coach:
         step = progress.lesson.steps[progress.index]
         if progress.beginning is None:
             progress.beginning = now
+            if progress.index == 0:
+                self._show_panels(progress.widgets)
             self._begin(step)
             self._show_notes(step, is_first=progress.index == 0)
         elif step.is_done is not None and not progress.went_back and step.is_done(progress.beginning, now):
@@ -72,6 +74,12 @@ class Coach:
         if rect is not None and not is_covered and (frame := fit_frame(rect, progress.widgets, _OUT * ui_scale())):
             self._draw_frame(frame)
         self._draw_card(progress.lesson, step, rect)
+
+    def _show_panels(self, widgets: Mapping[str, Rect]) -> None:
+        """Bring what most steps point at to the front: the user may come from the code, or from renders."""
+        for title in (PanelTitle.INSPECTOR, PanelTitle.VIEWER, PanelTitle.GRAPH):
+            if title not in widgets:
+                self._context.commands.show_panel(title)
 
     def _begin(self, step: Step) -> None:
         """Show what a step is about."""
