@@ -3,7 +3,7 @@ from math import ceil, log2
 from typing import Annotated, Any
 
 from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, OutputSocket, ProxyNote, Slider, Trait, Vector
-from ..light._coverage import COVERAGE_REACH
+from ..light._coverage import COVERAGE_AROUND, COVERAGE_REACH
 
 _SEAM = 2.0
 """Width of a bare edge in pixels: one on either side of the seam."""
@@ -113,7 +113,7 @@ class GeometryEdges(Filter):
             "geometry_edges_coverage",
             self.normal,
             near=near,
-            overlap=COVERAGE_REACH,
+            overlap=COVERAGE_AROUND,
             result=Vector(width=3),
             crease=self.crease_threshold,
         )

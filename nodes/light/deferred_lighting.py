@@ -27,7 +27,7 @@ from .._declare import (
     ramp_at,
 )
 from ._area_lights import AREA_KINDS
-from ._coverage import COVERAGE_REACH
+from ._coverage import COVERAGE_AROUND, COVERAGE_REACH
 from ._light_cookies import tabulate_throws
 from ._light_masks import BATCH, draw_masks, is_limited
 from ._light_tables import sort_lamps, tabulate_lights
@@ -38,7 +38,11 @@ _R3_ROOT = 1.2207440846057596
 _SEED_STEP = 7919
 """How far apart in the sequence swarms of two seeds begin: a prime above `MAX_LIGHTS`, so that they share no place."""
 
-_HERE = dict.fromkeys(("albedo", "material", "occlusion", "normal", "place", "near"), COVERAGE_REACH) | {"coverage": 0}
+_HERE = (
+    dict.fromkeys(("albedo", "material", "occlusion", "place"), COVERAGE_REACH)
+    | dict.fromkeys(("normal", "near"), COVERAGE_AROUND)
+    | {"coverage": 0}
+)
 """What a pixel is lit by: its own, or its neighbors'; lights and what they reach may be read anywhere."""
 
 _RIG = name_lights(
@@ -222,7 +226,7 @@ class DeferredLighting(Filter):
             self.albedo,
             normal=normal,
             near=near,
-            overlap=COVERAGE_REACH,
+            overlap=COVERAGE_AROUND,
             result=Vector(width=3),
         )
         return {"normal": normal, "place": place, "near": near, "coverage": coverage}

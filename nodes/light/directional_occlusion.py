@@ -15,7 +15,7 @@ from .._declare import (
     Slider,
     Vector,
 )
-from ._coverage import COVERAGE_REACH
+from ._coverage import COVERAGE_AROUND, COVERAGE_REACH
 from ._denoise import LIGHT, SPREAD, denoise, prefilter
 from ._environment import SKY, irradiance, shrunk
 from ._occlusion import DATA, FACTORS, SAMPLES, denoise_and_enlarge, measure_size
@@ -123,7 +123,7 @@ class DirectionalOcclusion(Filter):
             "directional_occlusion_coverage",
             self.normal,
             near=near,
-            overlap=COVERAGE_REACH,
+            overlap=COVERAGE_AROUND,
             result=Vector(width=3),
         )
 

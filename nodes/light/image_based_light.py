@@ -17,7 +17,7 @@ from .._declare import (
     Trait,
     Vector,
 )
-from ._coverage import COVERAGE_REACH, TURN_REACH
+from ._coverage import COVERAGE_AROUND, COVERAGE_REACH, TURN_REACH
 from ._environment import DATA, SKY, irradiance, shrunk
 
 _MIRROR = (1024, 512)
@@ -33,7 +33,9 @@ _SHARES = (64, 32)
 """Angles and roughnesses of the table of shares: reflections change by 0.25 % (RMS) with twice as many of both."""
 
 _HERE: Mapping[str, Overlap] = MappingProxyType(
-    dict.fromkeys(("normal", "albedo", "roughness", "metallic", "occlusion", "near"), COVERAGE_REACH) | {"coverage": 0}
+    dict.fromkeys(("albedo", "roughness", "metallic", "occlusion"), COVERAGE_REACH)
+    | dict.fromkeys(("normal", "near"), COVERAGE_AROUND)
+    | {"coverage": 0}
 )
 """What is read at the pixel itself or beside it; the surroundings are read anywhere."""
 
@@ -113,7 +115,7 @@ class ImageBasedLight(Filter):
             self.occlusion,
             near=near,
             coverage=coverage,
-            overlap={**_HERE, "normal": COVERAGE_REACH + TURN_REACH},
+            overlap={**_HERE, "normal": max(COVERAGE_AROUND, COVERAGE_REACH + TURN_REACH)},
             level0=mirror,
             level1=lobes[0],
             level2=lobes[1],
@@ -139,7 +141,7 @@ class ImageBasedLight(Filter):
             self.normal,
             self.albedo,
             near=near,
-            overlap=COVERAGE_REACH,
+            overlap=COVERAGE_AROUND,
             result=Vector(width=3),
         )
         return near, coverage

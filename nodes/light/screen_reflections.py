@@ -18,7 +18,7 @@ from .._declare import (
     Trait,
     Vector,
 )
-from ._coverage import COVERAGE_REACH
+from ._coverage import COVERAGE_AROUND
 from ._denoise import LIGHT, SPREAD, denoise, prefilter
 from ._march import surfaces
 
@@ -154,7 +154,7 @@ class ScreenReflections(Filter):
                 near=draw("screen_reflections_near", surfaces=all_surfaces, result=Field()),
                 facing=normal,
                 light=light,
-                overlap=COVERAGE_REACH,
+                overlap=COVERAGE_AROUND,
             )
         shading: dict[str, Any] = {
             "light": light,

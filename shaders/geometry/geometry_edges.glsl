@@ -87,9 +87,10 @@ vec3 geometry_edges_pure(bool deep) {
     Coverage shares = coverage_of(coverage_at(pixel));
     if (!coverage_is_sure(shares)) return mean;
     vec3 front_normal = coverage_normal(shares.front), back_normal = coverage_normal(shares.back);
-    if (back_normal != vec3(0.0) && length(mean - mix(back_normal, front_normal, shares.front_share)) > misfit) return mean;
+    float front_share = coverage_share(mean, back_normal);  // of flat surfaces, whose normals are those beside it
+    if (back_normal != vec3(0.0) && length(mean - mix(back_normal, front_normal, front_share)) > misfit) return mean;
     vec2 apart = abs(near_at(pixel) - vec2(near_at(shares.front), near_at(shares.back)));
-    bool front = deep && apart.x != apart.y ? apart.x < apart.y : shares.front_share > 0.5;
+    bool front = deep && apart.x != apart.y ? apart.x < apart.y : front_share > 0.5;
     return front ? front_normal : back_normal;
 }
 

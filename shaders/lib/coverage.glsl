@@ -2,9 +2,10 @@
 //
 // A renderer filters normals and colors over a pixel, but not depth. So at a silhouette or a crease a normal is the mean
 // of two surfaces: N = c F + (1 - c) B, with the coverage c of the front surface F. It belongs to neither, and light
-// computed from it is wrong. B is that of a pixel nearby which lies wholly in the back surface, and F has length 1; both
-// together give c and F. Each surface is then shaded alone, and their lights are added by coverage. Pixels with normals
-// of length 1 are left as they are, so renders without antialiasing stay exact.
+// computed from it is wrong. F and B are known from pixels nearby, each as far as its surface turns up to here; both
+// have length 1, and N says the rest. Each surface is then shaded alone, and their lights are added by coverage. One
+// surface that turns within a pixel is no edge: there the normals beside it turn as well. Pixels with normals of length 1
+// are left as they are, so renders without antialiasing stay exact.
 #include "lib/camera.glsl"
 #include "lib/geometry.glsl"
 
@@ -20,9 +21,7 @@ const float COVERAGE_STEEP = 8.0;       // depth that differs by 1 / 8 counts as
 const float COVERAGE_CONTRAST = 10.0;   // squared pixels: so much farther may a surface lie that differs by 1
 const float COVERAGE_NEVER = 1e9;       // the cost of what lies outside of the picture
 const float COVERAGE_LIMIT = 1e8;       // costs from here on are that
-// How much of its own normal a front surface gets, against noise where it covers little. A choice: with half or twice the
-// number 1 % of the pixels of the preset night_relight change by more than 1 / 255.
-const float COVERAGE_OWN = 0.02;
+const float COVERAGE_OWN = 0.02;        // the least coverage by which the length of a mean normal is divided
 // How far along the ray a plane may go on, as a part of the distance: farther it is seen edge-on. A choice: with 0.95 and
 // 1.05, or 0.8 and 1.2, no pixel of night_relight changes by more than 1 / 255.
 const float COVERAGE_NEAREST = 0.9, COVERAGE_FARTHEST = 1.1;
@@ -34,8 +33,20 @@ const float COVERAGE_ALIKE = 0.005;     // colors with less contrast, a tenth of
 const float COVERAGE_DOUBT = 0.05;      // a color that is farther from the mixes of two than by this part of their distance
                                         // is another texture, or that of a third surface
 
+// Choices: with half or twice each of these numbers errors at edges are up to 1.6 times as large in the scenes of
+// tests/nodes/test_shared_metals.py and test_lights_of_cycles.py, and none is smaller by more than a tenth.
+const float COVERAGE_MISFIT = 100.0;  // weight of the square of what two normals leave of the mean, against squared pixels
+const float COVERAGE_NOISE = 1e-3;    // the variance of a mean normal: that of 48 samples, one of which sees another surface
+const float COVERAGE_FLAT = 1e-4;     // the least variance of a normal from a pixel nearby: half a degree
+const float COVERAGE_BENT = 5.0;      // one surface turns so much more than it shows: 1 on a ball, 4 where it only starts
+const float COVERAGE_STEP = 0.5;      // squared: normals of neighbors that differ by more are of two surfaces
+const float COVERAGE_LONG = 0.4;      // longer steps of a normal do not go on in the next pixel
+const float COVERAGE_AGREE = 0.03;    // how far a share by color may be from those by normals
+// A normal that turns evenly, all over a pixel, has the variance 1 - |N|^2 of a twelfth of the square of its step.
+const float COVERAGE_TURNING = 12.0;
+
 // The surfaces of a pixel: how much the front one covers, and a pixel near by that lies wholly in each. `front` and
-// `back` are the pixel itself, with coverage 1, where there is only one.
+// `back` are the pixel itself where there is only one, and the share is the length of its normal where it turns, else 1.
 struct Coverage { float front_share; ivec2 front, back; };
 
 // The unit normal of a pixel, 0 on the background.
@@ -57,6 +68,37 @@ float coverage_apart(vec3 normal, float near, ivec2 at) {
     return dot(turned, turned) + min(deep * deep, 1.0);
 }
 
+// The square of what two normals leave of the mean normal of a pixel, as the best mix of them.
+float coverage_misfit(vec3 mean, vec3 first, vec3 second) {
+    vec3 apart = second - first, off = mean - first;
+    vec3 left = off - clamp(dot(off, apart) / max(dot(apart, apart), 1e-6), 0.0, 1.0) * apart;
+    return dot(left, left);
+}
+
+// The square of the step of an evenly turning normal, from one pixel to the next.
+float coverage_turning(ivec2 at) {
+    vec3 there = finite(normal_at(at));
+    return COVERAGE_TURNING * max(1.0 - dot(there, there), 0.0);
+}
+
+// What a pixel nearby says of the normal of its surface in this one: it goes on turning as there.
+vec3 coverage_known(ivec2 at) {
+    vec3 there = coverage_normal(at);
+    ivec2 away = at - pixel, far = at + sign(away);
+    vec3 turn = there - coverage_normal(far);
+    float size = length(turn), most = min(sqrt(coverage_turning(at)) / max(size, 1e-9), 1.0);
+    if (size >= COVERAGE_LONG) most = 0.0;
+    bool inside = all(greaterThanEqual(far, ivec2(0))) && all(lessThan(far, extent));
+    if (!inside || near_at(at) <= 0.0 || near_at(far) <= 0.0) return there;
+    return unit_normal(there + float(max(abs(away.x), abs(away.y))) * most * turn);
+}
+
+// The variance of what it says, in squared radians.
+float coverage_unsure(ivec2 at) {
+    ivec2 away = at - pixel;
+    return near_at(at) > 0.0 ? COVERAGE_FLAT + coverage_turning(at) * float(away.x * away.x + away.y * away.y) : 0.0;
+}
+
 // How much the front surface covers, from the mean normal of a pixel and the normal of the back surface.
 float coverage_share(vec3 mean, vec3 back) {
     vec3 apart = mean - back;
@@ -65,16 +107,34 @@ float coverage_share(vec3 mean, vec3 back) {
     return clamp(share, 0.0, 1.0);
 }
 
+// How much the front surface covers, by the normal of the back surface (x) and by that of the front one (y).
+vec2 coverage_by_normals(Coverage shares) {
+    vec3 mean = finite(normal_at(pixel));
+    float by_back = coverage_share(mean, coverage_known(shares.back));
+    return vec2(by_back, 1.0 - coverage_share(mean, coverage_known(shares.front)));
+}
+
+// The mean of both, by how well each normal is known.
+float coverage_balance(Coverage shares) {
+    vec2 found = coverage_by_normals(shares);
+    float ours = coverage_unsure(shares.front), theirs = coverage_unsure(shares.back);
+    return ours + theirs > 0.0 ? (ours * found.x + theirs * found.y) / (ours + theirs) : found.x;
+}
+
 // How much the front surface covers, where the color of the pixel is a mix of those of both surfaces: then color knows it
-// better than a normal, which also turns within a pixel. `share` is what the normal says. All are premultiplied.
-float coverage_color_share(float share, vec4 color, vec4 front, vec4 back) {
+// better than a normal, which also turns within a pixel. Normals say within which limits: mean normals are no longer than
+// 1. A color beyond those is no mix, such as that of a metal, which shows what it mirrors. All are premultiplied.
+float coverage_color_share(Coverage shares, vec4 color, vec4 front, vec4 back) {
     vec4 apart = front - back;
     float span = dot(apart, apart), contrast = span / max(dot(front, front) + dot(back, back), 1e-12);
     float mixed = clamp(dot(color - back, apart) / max(span, 1e-12), 0.0, 1.0);
     vec4 off = color - back - mixed * apart;
     float doubt = sqrt(dot(off, off) / max(span, 1e-12));
     float trust = clamp(contrast / COVERAGE_ALIKE - 1.0, 0.0, 1.0) * clamp(2.0 - doubt / COVERAGE_DOUBT, 0.0, 1.0);
-    return mix(share, mixed, trust);
+    vec2 known = coverage_by_normals(shares);
+    float beyond = mixed - clamp(mixed, min(known.x, known.y), max(known.x, known.y));
+    trust *= clamp(2.0 - abs(beyond) / COVERAGE_AGREE, 0.0, 1.0);
+    return mix(shares.front_share, mixed, trust);
 }
 
 // The ways to the pixels that stand for the front surface (xy) and the one behind (zw); 0 if there is only one.
@@ -87,17 +147,32 @@ ivec4 coverage_sides() {
             float cost = coverage_cost(ivec2(x, y));
             if (cost < least) least = cost, first_way = ivec2(x, y);
         }
-    vec3 normal = coverage_normal(pixel + first_way);
+    vec3 normal = coverage_normal(pixel + first_way), mean = finite(normal_at(pixel));
     float near = near_at(pixel + first_way);
     least = COVERAGE_LIMIT;
     for (int y = -reach; y <= reach; ++y)
         for (int x = -reach; x <= reach; ++x) {
             float apart = coverage_apart(normal, near, pixel + ivec2(x, y));
             float cost = coverage_cost(ivec2(x, y)) - COVERAGE_CONTRAST * min(apart, 1.0);
+            cost += COVERAGE_MISFIT * coverage_misfit(mean, normal, coverage_normal(pixel + ivec2(x, y)));
             if (apart > COVERAGE_DIFFERENT && cost < least) least = cost, second_way = ivec2(x, y);
         }
     if (first_way == COVERAGE_SELF || second_way == COVERAGE_SELF) return ivec4(0);
     return near_at(pixel + second_way) > near ? ivec4(second_way, first_way) : ivec4(first_way, second_way);
+}
+
+// The square of what the normal grows by along an axis, on the side where it is less.
+float coverage_step(vec3 normal, ivec2 way) {
+    vec3 after = coverage_normal(pixel + way) - normal, before = normal - coverage_normal(pixel - way);
+    float least = min(dot(after, after), dot(before, before));
+    return least < COVERAGE_STEP ? least : 0.0;
+}
+
+// True where a normal is shorter because one surface turns within the pixel, as the normals beside it do.
+bool coverage_is_bend(vec3 mean) {
+    vec3 normal = unit_normal(mean);
+    float steps = coverage_step(normal, ivec2(1, 0)) + coverage_step(normal, ivec2(0, 1));
+    return near_at(pixel) > 0.0 && 1.0 - dot(mean, mean) < COVERAGE_BENT / COVERAGE_TURNING * steps;
 }
 
 // The surfaces of this pixel as numbers to be stored: see coverage_of(). The search is a loop of one round or none: a
@@ -108,8 +183,9 @@ vec3 coverage_found() {
     ivec4 sides = ivec4(0);
     bool mixed = size > COVERAGE_NOTHING && (near_at(pixel) <= 0.0 || size < COVERAGE_WHOLE);
     for (int rounds = mixed ? 1 : 0; rounds > 0; --rounds) {
+        if (coverage_is_bend(mean)) { share = size; break; }
         sides = coverage_sides();
-        if (sides.xy != sides.zw) share = coverage_share(mean, coverage_normal(pixel + sides.zw));
+        if (sides.xy != sides.zw) share = coverage_balance(Coverage(share, pixel + sides.xy, pixel + sides.zw));
     }
     return vec3(share, (sides.xy << 3) + sides.zw);
 }
@@ -129,7 +205,7 @@ vec3 coverage_found_by_color() {
     Coverage shares = coverage_of(stored);
     for (int rounds = coverage_is_mixed(shares) ? 1 : 0; rounds > 0; --rounds)
         stored.x = coverage_color_share(
-            stored.x, finite(albedo_at(pixel)), finite(albedo_at(shares.front)), finite(albedo_at(shares.back))
+            shares, finite(albedo_at(pixel)), finite(albedo_at(shares.front)), finite(albedo_at(shares.back))
         );
     return stored;
 }
@@ -153,15 +229,27 @@ Coverage coverage_seen(Coverage shares) {
     return Coverage(shares.front_share, front ? pixel : shares.front, front ? shares.back : pixel);
 }
 
-// The part of the mean normal of this pixel that is that of the front surface.
-vec3 coverage_alone(Coverage shares) {
-    return finite(normal_at(pixel)) - (1.0 - shares.front_share) * coverage_normal(shares.back);
+// The normals of both surfaces of this pixel: those from beside it, moved so that their mean is that of the pixel, each as
+// far as it is unsure.
+void coverage_normals(Coverage shares, out vec3 front, out vec3 back) {
+    front = coverage_known(shares.front), back = coverage_known(shares.back);
+    float ours = shares.front_share, theirs = 1.0 - ours;
+    vec3 left = finite(normal_at(pixel)) - ours * front - theirs * back;
+    vec2 moved = vec2(ours * coverage_unsure(shares.front), theirs * coverage_unsure(shares.back));
+    left /= ours * moved.x + theirs * moved.y + COVERAGE_NOISE;
+    front = unit_normal(front + moved.x * left), back = unit_normal(back + moved.y * left);
 }
 
-// The normal of the front surface alone. Where it covers little, its own normal helps against noise.
-vec3 coverage_front(Coverage shares) {
-    vec3 front = coverage_normal(shares.front), alone = coverage_alone(shares) + COVERAGE_OWN * front;
-    return dot(alone, alone) > 0.0 ? normalize(alone) : front;
+// The normal of the front surface (k = 0) or of the one behind it, alone.
+vec3 coverage_side(Coverage shares, int k) {
+    vec3 front, back;
+    coverage_normals(shares, front, back);
+    return k == 0 ? front : back;
+}
+
+// The part of the mean normal of this pixel that is that of the front surface.
+vec3 coverage_alone(Coverage shares) {
+    return finite(normal_at(pixel)) - (1.0 - shares.front_share) * coverage_side(shares, 1);
 }
 
 // How much shorter the normal of the front surface is than those that it is the mean of: 1 where there is one. Light on

@@ -152,13 +152,14 @@ bool deferred_lighting_part(int k, bool mixed, Coverage shares, vec4 color, cons
     vec4 place = place_at(part.at);
     part.color = color;
     part.normal = unit_normal(normal_at(part.at));
-    part.turned = 1.0;
+    part.turned = mixed ? 1.0 : shares.front_share;
     for (int rounds = mixed ? 1 : 0; rounds > 0; --rounds) {
         part.color = coverage_part(
             color, finite(albedo_at(shares.front)), finite(albedo_at(shares.back)), shares.front_share
         );
         if (seen) place.xyz = coverage_place(rays, place.xyz, part.normal);
-        if (k == 0) part.normal = coverage_front(shares), part.turned = coverage_turned(shares);
+        part.normal = coverage_side(shares, k);
+        if (k == 0) part.turned = coverage_turned(shares);
         else part.color = color - part.color;
     }
     part.place = place.xyz;

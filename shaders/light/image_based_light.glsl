@@ -132,12 +132,15 @@ struct ImageBasedLightSurface { ivec2 at; vec3 normal; vec4 part; };
 ImageBasedLightSurface image_based_light_surface(Coverage halves, int k) {
     ivec2 at = k == 0 ? halves.front : halves.back;
     vec4 color = clamp(straight(finite(albedo_at(pixel))), 0.0, 1.0);
-    if (!coverage_is_mixed(halves)) return ImageBasedLightSurface(at, unit_normal(normal_at(at)), vec4(color.rgb, 1.0));
-    vec4 whole = vec4(finite(albedo_at(pixel)).rgb, 1.0);
-    vec4 front = vec4(finite(albedo_at(halves.front)).rgb, 1.0), back = vec4(finite(albedo_at(halves.back)).rgb, 1.0);
-    vec4 part = coverage_part(whole, front, back, halves.front_share);
-    vec3 normal = k == 0 ? coverage_front(halves) : coverage_normal(at);
-    return ImageBasedLightSurface(at, normal, clamp(k == 0 ? part : whole - part, 0.0, 1.0));
+    ImageBasedLightSurface surface = ImageBasedLightSurface(at, unit_normal(normal_at(at)), vec4(color.rgb, 1.0));
+    for (int rounds = coverage_is_mixed(halves) ? 1 : 0; rounds > 0; --rounds) {
+        vec4 whole = vec4(finite(albedo_at(pixel)).rgb, 1.0);
+        vec4 front = vec4(finite(albedo_at(halves.front)).rgb, 1.0), back = vec4(finite(albedo_at(halves.back)).rgb, 1.0);
+        vec4 part = coverage_part(whole, front, back, halves.front_share);
+        surface.normal = coverage_side(halves, k);
+        surface.part = clamp(k == 0 ? part : whole - part, 0.0, 1.0);
+    }
+    return surface;
 }
 
 vec4 image_based_light_diffuse(float intensity, float rotation, int up) {
