@@ -14,8 +14,9 @@ from halation import document
 from halation.compiler import NULL, Plan, Request, Target, compile_graph
 from halation.graph import Graph, Output, Port
 from halation.inputs.provider import MediaProvider
-from halation.nodes import Kind, RotoShape, catalogue, name_roto_shapes
+from halation.nodes import Kind, Light, LightKind, RotoShape, catalogue, name_lights, name_roto_shapes
 from halation.nodes.input.roto import Roto
+from halation.nodes.light.deferred_lighting import DeferredLighting
 from halation.presets import paths
 from halation.reference.specimen import drawable_outputs, plan_node
 from halation.resources.sandbox import UNRESTRICTED
@@ -30,6 +31,9 @@ TARGETS = {
 TOGETHER = 100
 """Programs that are checked by one process."""
 
+AREAS = name_lights(window=Light(LightKind.RECTANGLE), plate=Light(LightKind.DISC), neon=Light(LightKind.TUBE, matte=1))
+"""Lights with a size, which the node does not have by itself; one is in a pass with a mask."""
+
 
 def make_narrow_mask() -> Graph:
     """A mask whose edge is about as wide as a pixel, which takes a program of its own."""
@@ -42,6 +46,7 @@ def plans(target: Target) -> Iterator[Plan]:
     for node in catalogue().values():
         if drawable_outputs(node):
             yield plan_node(node, (1920, 1080), target)
+    yield plan_node(DeferredLighting, (1920, 1080), target, {"lights": AREAS})
     pictures = MediaProvider(sandbox=UNRESTRICTED)
     yield compile_graph(make_narrow_mask(), Request(), pictures, target=target)
     for path in paths():
@@ -60,6 +65,7 @@ def test_the_reference_compiler_takes_all_programs(target, tmp_path):
             if one.shader.vertex:
                 found.setdefault((one.shader.vertex, "vert"), name)
     assert len(found) > 200
+    assert {"deferred_lighting_areas", "deferred_lighting_limited"} <= set(found.values())
     files = []
     for number, ((source, stage), name) in enumerate(found.items()):
         files.append(tmp_path / f"{number}_{name.replace('/', '_')}.{stage}")

@@ -67,6 +67,11 @@ def floor(tilt: float = 0.12) -> tuple[Array, Array]:
     return places, normals
 
 
+def count_places(name: str, roughness: float = 1.0) -> int:
+    """How many rows of places make an integral within a quarter of what is asserted: compared with 160 and 320 rows."""
+    return (96 if "sunken" in name else 48) * (2 if roughness < 0.3 else 1)
+
+
 def integrate(
     light: Light, roughness: float, f0: float, count: int = 96, ground: tuple[Array, Array] | None = None
 ) -> tuple[Array, Array]:
@@ -103,17 +108,17 @@ def render(
 @pytest.mark.parametrize("name", LIGHTS)
 def test_diffuse_light_is_the_integral_over_the_light(run, name):
     light = LIGHTS[name]
-    diffuse, _ = integrate(light, 0.5, 0.04)
+    diffuse, _ = integrate(light, 0.5, 0.04, count_places(name))
     assert diffuse.max() > 1e-4
     np.testing.assert_allclose(render(run, (light,), "diffuse"), diffuse, atol=1e-2 * diffuse.max())
 
 
-@pytest.mark.parametrize(("roughness", "count"), [(0.2, 256), (0.45, 96), (0.8, 96)])
+@pytest.mark.parametrize("roughness", [0.2, 0.45, 0.8])
 @pytest.mark.parametrize("name", LIGHTS)
-def test_reflections_are_the_integral_over_the_light(run, name, roughness, count):
+def test_reflections_are_the_integral_over_the_light(run, name, roughness):
     """To 4e-3 of the light's radiance, and to 1e-2 where the horizon cuts a light."""
     light = LIGHTS[name]
-    _, specular = integrate(light, roughness, 0.04, count)
+    _, specular = integrate(light, roughness, 0.04, count_places(name, roughness))
     found = render(run, (light,), "specular_light", roughness=roughness)
     np.testing.assert_allclose(found, specular, atol=1e-2 if "sunken" in name else 4e-3)
 
@@ -122,7 +127,7 @@ def test_reflections_are_the_integral_over_the_light(run, name, roughness, count
 @pytest.mark.parametrize("name", LIGHTS)
 def test_metals_reflect_all_light_in_their_color(run, name, roughness, most):
     light = LIGHTS[name]
-    _, specular = integrate(light, roughness, 1.0)
+    _, specular = integrate(light, roughness, 1.0, count_places(name))
     found = render(run, (light,), "specular_light", roughness=roughness, metal=1.0)
     np.testing.assert_allclose(found, specular, atol=most)
 
@@ -131,8 +136,8 @@ def test_metals_reflect_all_light_in_their_color(run, name, roughness, most):
 def test_metals_at_every_angle(run, roughness):
     """Surfaces up to 85 degrees from the eye, of which many see a part of a light: 98 of 100 to 1e-2."""
     ground, errors = floor(1.0), []
-    for light in LIGHTS.values():
-        _, specular = integrate(light, roughness, 1.0, 128, ground)
+    for name, light in LIGHTS.items():
+        _, specular = integrate(light, roughness, 1.0, count_places(name, 0.2) * 2 // 3, ground)
         errors.append(render(run, (light,), "specular_light", ground, roughness=roughness, metal=1.0) - specular)
     assert np.percentile(np.abs(errors), 98) < 1e-2 and np.max(np.abs(errors)) < 5e-2
 
