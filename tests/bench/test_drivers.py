@@ -1,10 +1,22 @@
-"""The table of drivers counts what differs, names what is missing, and measures light by what a screen shows of it."""
+"""The table of drivers counts what differs, names what is missing, and measures light by what a screen shows of it.
+
+Every night all pictures are drawn on every driver that the machine has.
+"""
 
 from __future__ import annotations
 
+import subprocess
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import pytest
-from bench.drivers import compare, draw_pictures, format_rows, measure_difference
+from bench import driver_pictures
+from bench.driver_list import DRIVERS, Driver, MissingDriverError, describe_environment
+from bench.driver_pictures import Pictures, draw_in_processes, draw_pictures, list_pictures, list_ports, read_pictures
+from bench.drivers import compare, describe_row, draw_driver, format_rows, measure_difference
+from bench.newer_mesa import UnavailableError, find_source
 
 BLACK = np.zeros(4)
 
@@ -26,16 +38,85 @@ def test_differences_are_those_of_the_larger_of_one_and_the_light(
 
 
 def test_what_differs_and_what_is_missing_is_named() -> None:
-    expected = {"device": "a", "node.x": BLACK, "node.y": BLACK, "node.z": BLACK, "preset.p": BLACK}
-    found = {"device": "b", "node.x": BLACK + 0.003, "node.y": "ShaderError: no", "preset.p": BLACK + 0.5}
+    expected: Pictures = {"device": "a", "node.x": BLACK, "node.y": BLACK, "node.z": BLACK, "preset.p": BLACK}
+    found: Pictures = {"device": "b", "node.x": BLACK + 0.003, "node.y": "ShaderError: no", "preset.p": BLACK + 0.5}
     row = compare("zink", found, expected)
-    assert (row.device, row.nodes, row.presets, row.differing) == ("b", 1, 1, ("preset.p",))
+    assert (row.device, row.nodes, row.presets, row.differing) == ("b", 1, 1, {"preset.p": 0.5})
     assert row.failures == ("node.y: ShaderError: no", "node.z: not drawn")
-    assert format_rows([row]).splitlines()[-1] == "| zink | 1 | 1 | 1 | 0.5 preset.p |"
+    assert describe_row(row) == [*row.failures, "preset.p: 0.5"]
+    assert format_rows([row]).splitlines()[-1] == "| zink: b | 1 | 1 | 1 | 0.5 preset.p |"
 
 
 def test_pictures_are_drawn_or_say_why_not() -> None:
-    drawn = dict(draw_pictures(("node.exposure", "node.none")))
+    drawn = dict(draw_pictures(("node.exposure", "node.none", "inside.soft_bloom.glow.out")))
     assert isinstance(drawn["node.exposure"], np.ndarray) and drawn["node.exposure"].size == 48 * 27 * 4
     assert drawn["node.none"] == "KeyError: 'none'"
     assert compare("same", drawn, drawn).largest == 0.0
+
+
+def test_all_nodes_and_presets_are_pictures_and_a_preset_has_those_of_its_nodes() -> None:
+    names = list_pictures()
+    assert {"node.fxaa", "preset.turntable"} < set(names) and len(names) == len(set(names)) > 220
+    inside = list_ports("turntable")
+    assert {"inside.turntable.key.out", "inside.turntable.stage.normal"} < set(inside)
+    assert "inside.turntable.stage.camera" not in inside
+
+
+def end_at(name: str, words: Sequence[str], **_: Any) -> subprocess.CompletedProcess[str]:
+    """A process that draws black pictures and is killed by one of them."""
+    folder = Path(words[2])
+    for drawn in words[3:]:
+        (folder / "drawing").write_text(drawn)
+        if drawn == name:
+            return subprocess.CompletedProcess(words, -11, "", "")
+        np.save(folder / f"{drawn}.npy", BLACK)
+    (folder / "words.jsonl").write_text('["device", "a driver"]\n')
+    return subprocess.CompletedProcess(words, 0, "", "")
+
+
+def test_a_driver_that_ends_the_process_costs_one_picture(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(driver_pictures.subprocess, "run", lambda words, **_: end_at("node.b", words))
+    drawn = draw_in_processes(["node.a", "node.b", "node.c"], tmp_path, {})
+    assert drawn["node.b"] == "the process ended: it ended with -11"
+    assert isinstance(drawn["node.a"], np.ndarray) and isinstance(drawn["node.c"], np.ndarray)
+
+
+def test_what_a_folder_keeps_is_not_drawn_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    first = draw_driver(DRIVERS[0], ["node.exposure", "node.none"], tmp_path)
+    assert str(first["device"]).startswith("llvmpipe") and ", OpenGL 4" in str(first["device"])
+    assert first["node.none"] == "KeyError: 'none'"
+    monkeypatch.setattr(driver_pictures.subprocess, "run", None)
+    again = draw_driver(DRIVERS[0], ["node.exposure", "node.none"], tmp_path)
+    assert np.array_equal(again["node.exposure"], first["node.exposure"]) and again["node.none"] == first["node.none"]
+    assert set(read_pictures(tmp_path / "llvmpipe")) == {"device", "node.exposure", "node.none"}
+
+
+def test_a_driver_that_is_not_there_says_why(tmp_path: Path) -> None:
+    newer = Driver("newer", "llvmpipe", newer=True)
+    with pytest.raises(MissingDriverError, match="no newer Mesa is unpacked"):
+        describe_environment(newer, tmp_path, tmp_path)
+    library = tmp_path / "usr" / "lib" / "arm" / "libEGL_mesa.so.0"
+    vendors = tmp_path / "usr" / "share" / "glvnd" / "egl_vendor.d"
+    for folder in (library.parent, vendors):
+        folder.mkdir(parents=True)
+    library.touch()
+    variables = describe_environment(newer, tmp_path, tmp_path)
+    assert variables["LD_LIBRARY_PATH"].startswith(str(library.parent))
+    assert variables["__EGL_VENDOR_LIBRARY_DIRS"] == str(vendors)
+    with pytest.raises(MissingDriverError, match="there is no driver of Vulkan: lavapipe"):
+        describe_environment(Driver("zink", "zink", vulkan="lavapipe", newer=True), tmp_path, tmp_path)
+    with pytest.raises(MissingDriverError, match="cannot be opened"):
+        draw_driver(Driver("none", "none", {"GALLIUM_DRIVER": "softpipe"}), ["node.exposure"], tmp_path)
+    with pytest.raises(MissingDriverError, match=r"^llvmpipe"):
+        draw_driver(Driver("other", "softpipe", {"GALLIUM_DRIVER": "llvmpipe"}), [], tmp_path)
+
+
+def test_backports_come_from_where_the_system_comes_from() -> None:
+    debian = "https://mirror.example/debian/|{0}|{1}|Debian"
+    places = [("bookworm-updates", "main"), ("bookworm", "contrib"), ("bookworm", "main")]
+    targets = ["https://mirror.example/other/|stable|main|Other", *(debian.format(*place) for place in places)]
+    line = find_source("\n".join(targets)).split()
+    assert (line[0], line[-3:]) == ("deb", ["https://mirror.example/debian/", "bookworm-backports", "main"])
+    for other in ("", "https://mirror.example/ubuntu/|noble|main|Ubuntu", debian.format("sid", "main")):
+        with pytest.raises(UnavailableError, match="stable Debian"):
+            find_source(other)
