@@ -15,6 +15,7 @@ import OpenImageIO as oiio
 from browser import Browser
 from halation.compiler.codegen import rasterize
 from halation.media.comparison.metrics import measure_flip
+from placed_corners import place_corners
 
 SIZE = "480x270"
 RENDERER = "halation.gl.getParameter(halation.gl.getExtension('WEBGL_debug_renderer_info').UNMASKED_RENDERER_WEBGL)"
@@ -81,20 +82,9 @@ def place_corners_like(browser: Browser) -> Iterator[None]:
         yield
         return
     parts = 2 ** browser.run("halation.gl.getParameter(halation.gl.SUBPIXEL_BITS)")
-    width, height = SIZE.split("x")
-    write_exactly = rasterize.write_vertex_text
-
-    def write_rounded(library: str) -> str:
-        body, end, _ = write_exactly(library).rpartition("}")
-        return f"""{body}
-            if (gl_Position.w > 0.0) {{
-                const vec2 room = vec2({width}.0, {height}.0) * 0.5;
-                vec2 at = (gl_Position.xy / gl_Position.w + 1.0) * room;
-                gl_Position.xy = (floor(at * {parts}.0 + 0.5) / {parts}.0 / room - 1.0) * gl_Position.w;
-            }}
-        {end}"""
-
-    with patch.object(rasterize, "write_vertex_text", write_rounded):
+    width, height = map(int, SIZE.split("x"))
+    placed = place_corners(rasterize.write_vertex_text, (width, height), parts)
+    with patch.object(rasterize, "write_vertex_text", placed):
         yield
 
 

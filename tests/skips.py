@@ -58,6 +58,8 @@ REASONS: dict[str, Cause] = {
     "Mono is not installed": "tool",
     "slangpy is not installed": "tool",
     "there is no driver of Vulkan": "tool",
+    "there is no driver named": "tool",
+    "no newer Mesa is unpacked": "tool",
     "vkBasalt or Xvfb is not installed": "tool",
     "uv is not installed": "tool",
     "Chromium is not installed": "tool",

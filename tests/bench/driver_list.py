@@ -1,6 +1,6 @@
 """The OpenGL drivers that pictures are compared on, and where this machine has them.
 
-Without a device: a driver is a few variables of the environment. Mesa of the system brings llvmpipe, softpipe and zink.
+A driver is a few variables of the environment. Mesa of the system brings llvmpipe, softpipe and zink.
 `newer_mesa.py` unpacks a newer Mesa beside it. Zink draws by Vulkan, on Mesa's lavapipe or on SwiftShader, which is
 Google's and comes with Chromium.
 """
@@ -22,7 +22,10 @@ Vulkan = Literal["", "lavapipe", "SwiftShader"]
 
 @dataclass(frozen=True)
 class Driver:
-    """A way to run OpenGL: what the environment says, and a word of the name that the driver then gives itself."""
+    """A way to run OpenGL: what the environment says, and a word of the name that the driver then gives itself.
+
+    `corners` are the parts of a pixel at which it places the corners of triangles: `placed_corners` says why.
+    """
 
     name: str
     word: str
@@ -30,6 +33,8 @@ class Driver:
     form: str = ""
     vulkan: Vulkan = ""
     newer: bool = False
+    corners: int = 256
+    exact_angles: bool = False
 
 
 _LLVMPIPE = {"GALLIUM_DRIVER": "llvmpipe"}
@@ -47,15 +52,15 @@ DRIVERS = (
     Driver("OpenGL 4.3", "llvmpipe", _MIDDLE),
     Driver("softpipe", "softpipe", _SOFTPIPE),
     Driver("zink, lavapipe", "zink", _ZINK, vulkan="lavapipe"),
-    Driver("zink, SwiftShader", "SwiftShader", _SWIFT, "fragment", vulkan="SwiftShader"),
+    Driver("zink, SwiftShader", "SwiftShader", _SWIFT, "fragment", vulkan="SwiftShader", corners=16, exact_angles=True),
     Driver("newer llvmpipe", "llvmpipe", _LLVMPIPE, "compute", newer=True),
     Driver("newer llvmpipe, fragment", "llvmpipe", _LLVMPIPE, "fragment", newer=True),
     Driver("newer softpipe", "softpipe", _SOFTPIPE, newer=True),
     Driver("newer zink, lavapipe", "zink", _ZINK, vulkan="lavapipe", newer=True),
-    Driver("newer zink, SwiftShader", "SwiftShader", _SWIFT, "fragment", vulkan="SwiftShader", newer=True),
 )
 """The first is what the others are compared with. Softpipe says 3.3 and can do more, and so does zink on SwiftShader;
-zink refuses processors unless it is told to take them."""
+zink refuses processors unless it is told to take them. Softpipe rounds no corners, so 256ths suit it too. The newer
+zink on SwiftShader is left out: pixels that leave a loop before their neighbors lose their values there."""
 
 _SWIFTSHADER = (
     "/usr/lib/chromium/libvk_swiftshader.so",

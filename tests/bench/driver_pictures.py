@@ -11,25 +11,35 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import nullcontext
 from pathlib import Path
+from typing import Any
 
 sys.path.append(str(Path(__file__).parents[1]))
 
 import numpy as np
 from devices import open_renderer
 from halation import document
+from halation.export.package.exact_functions import use_exact_functions
 from halation.graph import Graph, Port, signature
 from halation.nodes import catalogue
 from halation.presets import paths, sample
 from halation.reference.specimen import drawable_outputs, name_specimen, show_on_sample
 from halation.renderer import FrameRenderer, Renderer, RenderRequest
 from halation.resources.sandbox import UNRESTRICTED
+from placed_corners import place_all_corners
 
 Array = np.ndarray
 Pictures = dict[str, Array | str]
 
 SCALE = 0.1
 """Of 480 x 270: softpipe, which interprets shaders, takes minutes for all of them."""
+
+CORNERS = "HALATION_TEST_CORNERS"
+"""The variable that says at which parts of a pixel corners of triangles are; without it they are where they are."""
+
+ANGLES = "HALATION_TEST_EXACT_ANGLES"
+"""The variable that replaces the driver's sines, cosines and arc tangents by those of exported pages."""
 
 FRAME = 4
 """How many frames are before the one that is drawn of what moves."""
@@ -53,6 +63,8 @@ def list_ports(preset: str) -> list[str]:
 def draw_pictures(names: Sequence[str]) -> Iterator[tuple[str, Array | str]]:
     """Every picture by name, `node.bloom` or `preset.soft_bloom`, or why there is none; first the driver's name."""
     renderer = open_renderer(budget=0)
+    if os.environ.get(ANGLES):
+        use_exact_angles(renderer)
     yield "device", f"{renderer.device.target.renderer}, OpenGL {renderer.device.driver}"
     for name in names:
         try:
@@ -60,6 +72,26 @@ def draw_pictures(names: Sequence[str]) -> Iterator[tuple[str, Array | str]]:
         except Exception as error:
             yield name, f"{type(error).__name__}: {error}"
     renderer.close()
+
+
+def use_exact_angles(renderer: Renderer) -> None:
+    """Let the programs of a renderer compute angles by themselves, as pages do that `halation export` writes."""
+    device = type(renderer.device)
+    create = device.create_program
+
+    def create_exact(self: Any, fragment: str, vertex: str = "") -> Any:
+        return create(self, _replace_angles(fragment), _replace_angles(vertex))
+
+    device.create_program = create_exact
+
+
+def _replace_angles(text: str) -> str:
+    """A program with functions for angles after its version and extensions."""
+    changed, functions = use_exact_functions(text)
+    lines = changed.splitlines(keepends=True)
+    heads = [number for number, line in enumerate(lines) if line.startswith(("#version", "#extension"))]
+    first = max(heads, default=-1) + 1
+    return "".join([*lines[:first], functions, *lines[first:]])
 
 
 def _draw(renderer: Renderer, name: str) -> Array:
@@ -93,6 +125,7 @@ def _draw_graph(renderer: Renderer, graph: Graph, targets: Mapping[str, Port] | 
 def draw_in_processes(names: Sequence[str], folder: Path, variables: Mapping[str, str]) -> Pictures:
     """What a driver draws, where the environment has these variables; `folder` keeps it.
 
+
     Where the driver cannot be opened, the result has no `device`, and says why under `failure`.
     """
     while left := [name for name in ("device", *names) if name not in (found := read_pictures(folder))]:
@@ -103,7 +136,9 @@ def draw_in_processes(names: Sequence[str], folder: Path, variables: Mapping[str
             continue
         reason = (ended.stderr.strip().splitlines() or [f"it ended with {ended.returncode}"])[-1]
         if not (folder / "drawing").is_file():
-            return {**found, "failure": reason}
+            # Where all is drawn, the driver ended the process after its last picture.
+            found = read_pictures(folder)
+            return found if {"device", *names} <= set(found) else {**found, "failure": reason}
         _keep(folder, (folder / "drawing").read_text("utf-8"), f"the process ended: {reason}")
     return read_pictures(folder)
 
@@ -131,10 +166,12 @@ def _keep(folder: Path, name: str, picture: Array | str) -> None:
 def main(folder: Path, names: Sequence[str]) -> None:
     """Draw what is named, and say before each picture which it is."""
     coming = iter(names)
-    for name, picture in draw_pictures(names):
-        _keep(folder, name, picture)
-        if following := next(coming, ""):
-            (folder / "drawing").write_text(following, "utf-8")
+    parts = int(os.environ.get(CORNERS) or 0)
+    with place_all_corners(parts) if parts else nullcontext():
+        for name, picture in draw_pictures(names):
+            _keep(folder, name, picture)
+            if following := next(coming, ""):
+                (folder / "drawing").write_text(following, "utf-8")
     (folder / "drawing").unlink(missing_ok=True)
 
 

@@ -17,14 +17,14 @@ import argparse
 import sys
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 sys.path.append(str(Path(__file__).parents[1]))
 
 import numpy as np
 from bench.driver_list import DRIVERS, Driver, MissingDriverError, describe_environment
-from bench.driver_pictures import Array, Pictures, draw_in_processes, list_pictures, list_ports
+from bench.driver_pictures import ANGLES, CORNERS, Array, Pictures, draw_in_processes, list_pictures, list_ports
 
 VISIBLE = 1.0 / 255.0
 """A difference that a screen of 8 bits may show."""
@@ -72,14 +72,20 @@ def compare(driver: str, found: Pictures, expected: Pictures) -> Comparison:
     return Comparison(driver, device, nodes, len(differences) - nodes, tuple(failures), differing, largest, where)
 
 
+def draw_reference(driver: Driver, names: Sequence[str], folder: Path) -> Pictures:
+    """What llvmpipe draws, with corners of triangles where this driver places them."""
+    return draw_driver(replace(DRIVERS[0], corners=driver.corners), names, folder)
+
+
 def draw_driver(driver: Driver, names: Sequence[str], folder: Path) -> Pictures:
     """What a driver draws, kept in a folder of its own. Raises MissingDriverError where this machine has none such."""
-    place = folder / driver.name.replace(", ", "-").replace(" ", "-")
+    place = folder / f"{driver.name.replace(', ', '-').replace(' ', '-')}-{driver.corners}"
     place.mkdir(parents=True, exist_ok=True)
-    variables = {**describe_environment(driver, place), "HALATION_TEST_FORM": driver.form}
+    variables = {"HALATION_TEST_FORM": driver.form, CORNERS: str(driver.corners)}
+    variables |= describe_environment(driver, place) | ({ANGLES: "1"} if driver.exact_angles else {})
     found = draw_in_processes(names, place, variables)
     if driver.word not in str(found.get("device", "")):
-        raise MissingDriverError(f"{found.get('failure') or found.get('device')}")
+        raise MissingDriverError(f"there is no driver named {driver.name}: {found.get('failure') or found['device']}")
     return {"device": found["device"], **{name: found[name] for name in names}}
 
 
@@ -118,13 +124,13 @@ def main() -> int:
     rows: list[Comparison] = []
     with tempfile.TemporaryDirectory() as temporary:
         folder = (options.keep or Path(temporary)).absolute()
-        expected = draw_driver(DRIVERS[0], names, folder)
         for driver in (DRIVERS[0], *chosen):
             try:
                 found = draw_driver(driver, names, folder)
             except MissingDriverError as error:
                 print(f"{driver.name}: left out ({error})", flush=True)
                 continue
+            expected = draw_reference(driver, names, folder)
             rows.append(row := compare(driver.name, found, expected))
             print(f"{row.driver}: {row.device}", *describe_row(row), sep="\n  ", flush=True)
     print(format_rows(rows))
