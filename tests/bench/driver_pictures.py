@@ -80,12 +80,12 @@ def use_exact_angles(renderer: Renderer) -> None:
     create = device.create_program
 
     def create_exact(self: Any, fragment: str, vertex: str = "") -> Any:
-        return create(self, _replace_angles(fragment), _replace_angles(vertex))
+        return create(self, replace_angles(fragment), replace_angles(vertex))
 
     device.create_program = create_exact
 
 
-def _replace_angles(text: str) -> str:
+def replace_angles(text: str) -> str:
     """A program with functions for angles after its version and extensions."""
     changed, functions = use_exact_functions(text)
     lines = changed.splitlines(keepends=True)

@@ -14,9 +14,19 @@ import numpy as np
 import pytest
 from bench import driver_pictures
 from bench.driver_list import DRIVERS, Driver, MissingDriverError, describe_environment
-from bench.driver_pictures import Pictures, draw_in_processes, draw_pictures, list_pictures, list_ports, read_pictures
-from bench.drivers import compare, describe_row, draw_driver, format_rows, measure_difference
+from bench.driver_pictures import (
+    Pictures,
+    draw_in_processes,
+    draw_pictures,
+    list_pictures,
+    list_ports,
+    read_pictures,
+    replace_angles,
+)
+from bench.drivers import compare, describe_row, draw_driver, draw_reference, format_rows, measure_difference
+from bench.explained_differences import CAUSES, find_unexplained
 from bench.newer_mesa import UnavailableError, find_source
+from placed_corners import place_all_corners
 
 BLACK = np.zeros(4)
 
@@ -54,6 +64,26 @@ def test_pictures_are_drawn_or_say_why_not() -> None:
     assert compare("same", drawn, drawn).largest == 0.0
 
 
+def test_a_program_gets_functions_for_angles_after_its_extensions() -> None:
+    text = "#version 430\n#extension GL_ARB_a : require\nvoid main() { float x = cos(1.0); }\n"
+    lines = replace_angles(text).splitlines()
+    assert lines[:2] == text.splitlines()[:2] and lines[-1] == "void main() { float x = exact_cos(1.0); }"
+    assert any(line.startswith("float exact_cos(") for line in lines[2:-1])
+    assert replace_angles("") == ""
+
+
+def test_corners_of_triangles_are_where_they_are_asked_for() -> None:
+    """Llvmpipe places them at 256ths of a pixel by itself; at whole pixels the picture is another one."""
+
+    def draw(parts: int) -> Pictures:
+        with place_all_corners(parts):
+            return dict(draw_pictures(["node.scene"]))
+
+    free = dict(draw_pictures(["node.scene"]))
+    assert not compare("256", draw(256), free).differing
+    assert compare("1", draw(1), free).largest > 0.1
+
+
 def test_all_nodes_and_presets_are_pictures_and_a_preset_has_those_of_its_nodes() -> None:
     names = list_pictures()
     assert {"node.fxaa", "preset.turntable"} < set(names) and len(names) == len(set(names)) > 220
@@ -88,7 +118,7 @@ def test_what_a_folder_keeps_is_not_drawn_again(tmp_path: Path, monkeypatch: pyt
     monkeypatch.setattr(driver_pictures.subprocess, "run", None)
     again = draw_driver(DRIVERS[0], ["node.exposure", "node.none"], tmp_path)
     assert np.array_equal(again["node.exposure"], first["node.exposure"]) and again["node.none"] == first["node.none"]
-    assert set(read_pictures(tmp_path / "llvmpipe")) == {"device", "node.exposure", "node.none"}
+    assert set(read_pictures(tmp_path / "llvmpipe-256")) == {"device", "node.exposure", "node.none"}
 
 
 def test_a_driver_that_is_not_there_says_why(tmp_path: Path) -> None:
@@ -120,3 +150,32 @@ def test_backports_come_from_where_the_system_comes_from() -> None:
     for other in ("", "https://mirror.example/ubuntu/|noble|main|Ubuntu", debian.format("sid", "main")):
         with pytest.raises(UnavailableError, match="stable Debian"):
             find_source(other)
+
+
+def test_a_difference_is_explained_for_drivers_of_a_name_and_for_no_other() -> None:
+    differing = {"node.oil": 1.0, "node.fxaa": 0.04, "preset.soft_bloom": 0.1}
+    assert find_unexplained("newer softpipe", differing) == {"preset.soft_bloom": 0.1}
+    assert find_unexplained("OpenGL 4.1", differing) == {"node.oil": 1.0, "preset.soft_bloom": 0.1}
+    assert frozenset[str]().union(*(cause.pictures for cause in CAUSES)) <= set(list_pictures())
+    assert all(any(cause.word in driver.name for driver in DRIVERS) for cause in CAUSES)
+
+
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of this night's pictures: llvmpipe's are drawn once for all drivers."""
+    return tmp_path_factory.mktemp("drivers")
+
+
+@pytest.mark.nightly  # minutes for each driver
+@pytest.mark.timeout(3600)
+@pytest.mark.parametrize("driver", DRIVERS[1:], ids=lambda driver: driver.name)
+def test_another_driver_draws_the_same_pictures(driver: Driver, drawn: Path) -> None:
+    """All nodes and presets. What differs has a known cause; `tests/bench/drivers.py` prints the table."""
+    names = list_pictures()
+    try:
+        found = draw_driver(driver, names, drawn)
+    except MissingDriverError as error:
+        pytest.skip(str(error))
+    row = compare(driver.name, found, draw_reference(driver, names, drawn))
+    assert not row.failures
+    assert not find_unexplained(driver.name, row.differing)
