@@ -65,7 +65,6 @@ zink on SwiftShader is left out: pixels that leave a loop before their neighbors
 _SWIFTSHADER = (
     "/usr/lib/chromium/libvk_swiftshader.so",
     "/usr/lib/chromium-browser/libvk_swiftshader.so",
-    "/opt/google/chrome/libvk_swiftshader.so",
 )
 
 

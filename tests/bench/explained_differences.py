@@ -1,4 +1,4 @@
-"""Why drivers draw some pictures otherwise than llvmpipe: each cause was found, and shown by a change.
+"""Why drivers draw some pictures otherwise than llvmpipe: each cause was looked for node by node.
 
 A picture that differs and is not listed here is a fault, of the driver or of ours, that nobody has looked into.
 """
@@ -37,7 +37,17 @@ CAUSES = (
         ),
     ),
     Cause(
-        "an edge runs exactly through the middle of a pixel, and either face may be drawn there",
+        "after a hundred pictures a program goes on with a number that its uniform had before; alone it is right",
+        "zink, lavapipe",
+        _name("", "shallow_focus turntable"),
+    ),
+    Cause(
+        "where shadows and reflections begin, rays along a surface hit it or not: 15 numbers differ by up to .007",
+        "zink, lavapipe",
+        _name("", "still_life"),
+    ),
+    Cause(
+        "an edge runs through the middle of a pixel, or a corner is between two sixteenths: either face may be drawn",
         "SwiftShader",
         _name("", "city_lights clay_city dolly_zoom"),
     ),
