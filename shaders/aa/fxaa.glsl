@@ -38,7 +38,8 @@ vec4 fxaa(int quality, float subpixel, float threshold, float threshold_dark) {
                       + abs(north_east + south_east - 2.0 * east);
     float across_columns = abs(north_west + north_east - 2.0 * north) + 2.0 * abs(west + east - 2.0 * here)
                          + abs(south_west + south_east - 2.0 * south);
-    bool level = across_rows >= across_columns;
+    // In a pixel that sticks out both are the same sum: rows win, whichever way a driver rounds it.
+    bool level = across_rows >= across_columns - 1e-5 * high;
 
     // The edge runs between this pixel and the neighbor whose tone differs most.
     float before = level ? north : west, after = level ? south : east;

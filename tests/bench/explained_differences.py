@@ -24,11 +24,6 @@ def _name(nodes: str = "", presets: str = "") -> frozenset[str]:
 
 CAUSES = (
     Cause(
-        "it decides where an edge runs and how far: on llvmpipe alone, noise of 1e-7 changes one or two pixels by .34",
-        "",
-        _name("fxaa"),
-    ),
-    Cause(
         "softpipe writes an element of an array at the index that the first of four pixels beside each other has",
         "softpipe",
         _name(

@@ -43,9 +43,8 @@ PAGE = Path(__file__).parents[2] / "docs" / "export-python.md"
 DAILY, NIGHTLY = (0, 3), (1, 2)
 """Which values of each node are tried: 0 its defaults, others at random, 3 with all inputs linked."""
 
-STEPS = {"halftone": 0.005, "distance_field": 0.005, "fxaa": 0.01}
-"""Nodes that decide by thresholds or between equally near places: the part of pixels that rounding decides. On these
-pictures, in which nearly every pixel is an edge, noise of 1e-7 on the tone changes one percent of them in `fxaa`."""
+STEPS = {"halftone": 0.005, "distance_field": 0.005}
+"""Nodes that decide by thresholds or between equally near places: the part of pixels that rounding decides."""
 
 OFTEN = ["agx_look", "crt_television", "glitch_art", "neon_edges", "risograph", "soft_bloom", "watercolor"]
 SELDOM = ["anamorphic_flares", "auto_exposed", "bleach_bypass", "burning_page", "cinematic_grade", "comic_ink",

@@ -41,7 +41,7 @@ def fxaa(image: Array, quality: str, subpixel: float, threshold: float, threshol
 
     rows = [np.abs(near[x, -1] + near[x, 1] - 2.0 * near[x, 0]) for x in (-1, 0, 1)]
     columns = [np.abs(near[-1, y] + near[1, y] - 2.0 * near[0, y]) for y in (-1, 0, 1)]
-    is_level = rows[0] + 2.0 * rows[1] + rows[2] >= columns[0] + 2.0 * columns[1] + columns[2]
+    is_level = rows[0] + 2.0 * rows[1] + rows[2] >= columns[0] + 2.0 * columns[1] + columns[2] - 1e-5 * high
     before, after = np.where(is_level, north, west), np.where(is_level, south, east)
     is_before = np.abs(before - here) >= np.abs(after - here)
     along = np.where(is_level, (1.0, 0.0), (0.0, 1.0))
