@@ -20,7 +20,6 @@ const int AREA_ARC = 9;                       // corners at each end of a tube
 // turns quickly. Choices between time and error, as are those below: with pi / 4, one in a hundred lights that the
 // horizon cuts is off by 0.018 of its radiance, with pi / 6 by 0.014.
 const float AREA_PIECE = PI / 6.0, AREA_LOW_PIECE = PI / 12.0;
-const float AREA_STRAIGHT = 0.866;  // the cosine of that longest piece
 // Heights of parts of the cap, up to which one place stands for the way from the middle to the edge, or two.
 const float AREA_FLAT = 0.1, AREA_ROUND = 0.5;
 // How much narrower than the lobe that cosine is. With 2, lights were found that it sees from a side, off by 0.3.
@@ -34,8 +33,9 @@ const vec3 AREA_SHARES[3] = vec3[](vec3(1.0, 0.0, 0.0), vec3(0.5, 0.5, 0.0), vec
 struct AreaSurface { vec3 view, stretched; mat3 frame, lobe, back; float alpha; };
 
 // A light as a surface sees it: its middle and half axes from there, and its radiance toward it. For a tube `across` is
-// the side that faces the surface, and `arc` the angle from there to its rim.
-struct AreaLight { int kind; vec3 middle, along, across, deep, radiance; float arc; ivec2 far; };
+// the side that faces the surface, and `arc` the angle from there to its rim. For a disc `arc` is half of the angle of
+// its rim that is above the horizon, which begins at `start` where the horizon cuts it.
+struct AreaLight { int kind; vec3 middle, along, across, deep, radiance; float arc, start; bool cut; ivec2 far; };
 
 // The sum over the edges of a polygon above the horizon, z = 0. `entry` and `leave` are where it crosses the horizon,
 // and `from` and `to` the ends of the last edge above it.
@@ -83,7 +83,7 @@ AreaLight area_light(int row, vec3 place) {
     vec4 first_axis = areas_at(ivec2(2, row)), second_axis = areas_at(ivec2(3, row));
     AreaLight lamp;
     lamp.kind = int(glow.w), lamp.middle = origin.xyz - place, lamp.along = first_axis.xyz, lamp.across = second_axis.xyz;
-    lamp.deep = vec3(0.0), lamp.arc = 0.0, lamp.far = ivec2(0);
+    lamp.deep = vec3(0.0), lamp.arc = PI, lamp.start = 0.0, lamp.cut = false, lamp.far = ivec2(0);
     float window = light_window(dot(lamp.middle, lamp.middle), origin.w);
     lamp.radiance = glow.rgb * window * window;
     if (lamp.kind <= AREA_DISC) {
@@ -102,6 +102,17 @@ AreaLight area_light(int row, vec3 place) {
     lamp.arc = acos(min(radius / max(apart, 1e-9), 1.0));
     if (apart <= radius && lamp.far == ivec2(0)) lamp.radiance = vec3(0.0);  // within the tube
     return lamp;
+}
+
+// Leaves the part of a disc above the horizon of a surface with this normal: its corners are on the rest of its rim.
+void area_cut(inout AreaLight lamp, vec3 normal) {
+    vec2 tilt = vec2(dot(lamp.along, normal), dot(lamp.across, normal));
+    float up = dot(lamp.middle, normal), size = length(tilt);
+    if (up <= -size) lamp.radiance = vec3(0.0);
+    if (abs(up) >= size) return;
+    lamp.cut = true;
+    lamp.arc = acos(-up / size);
+    lamp.start = atan(tilt.y, tilt.x) - lamp.arc;
 }
 
 // What an edge between two directions adds to the light of a polygon, as a vector: z is what a cosine reflects. By a fit
@@ -139,7 +150,7 @@ float area_end(AreaSum sum) {
 
 // How many corners the outline of a light has.
 int area_corners(AreaLight lamp) {
-    return lamp.kind == AREA_RECTANGLE ? 4 : lamp.kind == AREA_DISC ? AREA_RIM : 2 * AREA_ARC;
+    return lamp.kind == AREA_RECTANGLE ? 4 : lamp.kind == AREA_DISC ? AREA_RIM + int(lamp.cut) : 2 * AREA_ARC;
 }
 
 // A corner of the outline. The corners of a round one lie outside of it, so that both have the same area, unless they are
@@ -151,11 +162,12 @@ vec3 area_corner(AreaLight lamp, int corner, bool on_arc) {
     }
     bool disc = lamp.kind == AREA_DISC;
     int end = disc ? 0 : corner / AREA_ARC, number = corner - end * AREA_ARC;
-    float side = end == 0 ? 1.0 : -1.0, whole = disc ? 2.0 * PI : lamp.far[end] != 0 ? 2.0 * (lamp.arc - PI) : 2.0 * lamp.arc;
+    float side = end == 0 ? 1.0 : -1.0, whole = disc ? 2.0 * lamp.arc : lamp.far[end] != 0 ? 2.0 * (lamp.arc - PI) : 2.0 * lamp.arc;
     float edges = float(disc ? AREA_RIM : AREA_ARC - 1), step = whole / edges;
-    float turn = disc ? float(number) * step : side * (float(number) * step - lamp.arc);
-    float wide = disc ? sqrt(step / sin(step)) : 1.0 + step * step / 12.0 * edges / (edges - 1.0);
-    if (on_arc || !disc && (number == 0 || number == AREA_ARC - 1)) wide = 1.0;
+    float turn = disc ? lamp.start + float(number) * step : side * (float(number) * step - lamp.arc);
+    bool closed = disc && !lamp.cut;
+    float wide = closed ? sqrt(step / sin(step)) : 1.0 + step * step / 12.0 * edges / (edges - 1.0);
+    if (on_arc || !closed && (number == 0 || float(number) == edges)) wide = 1.0;
     vec3 middle = disc ? lamp.middle : lamp.middle + side * lamp.along;
     return middle + wide * (cos(turn) * (disc ? lamp.along : lamp.across) + sin(turn) * (disc ? lamp.across : lamp.deep));
 }
@@ -206,54 +218,68 @@ float area_near(AreaSurface surface, vec3 from, vec3 to) {
     return clamp(dot(a, b) * inversesqrt(dot(a, a) * dot(b, b)), -1.0, 1.0);
 }
 
-// Adds an edge, in pieces, or an arc in one piece that goes over `by`.
-void area_outline(inout AreaCap cap, AreaSurface surface, vec3 from, vec3 by, vec3 to, bool curved, float longest) {
-    float angle = curved ? 0.0 : acos(area_near(surface, from, to)), pieces = max(ceil(angle / longest), 1.0);
-    if (!curved) from /= length(surface.lobe * from), to /= length(surface.lobe * to), by = from + to;
-    float step = angle / pieces;
-    vec3 end = to;
+// The place on a circle that is straight beyond one within it.
+vec3 area_onto(vec3 place, vec3 center, float radius) { return center + radius * normalize(place - center); }
+
+// Adds an edge in pieces. With a `radius` it is an arc around `center`: what lies on the edge is moved onto it.
+void area_outline(
+    inout AreaCap cap, AreaSurface surface, vec3 from, vec3 to, vec3 center, float radius, float longest
+) {
+    float angle = acos(area_near(surface, from, to)), pieces = max(ceil(angle / longest), 1.0), step = angle / pieces;
+    vec4 ends = vec4(1.0 / length(surface.lobe * from), 1.0 / length(surface.lobe * to), 0.0, 0.0);
     for (float piece = 0.0; piece < pieces; ++piece) {
         vec4 after = step * (piece + vec4(0.5, 0.5, 1.0, 1.0)), turns = vec4(angle, 0.0, angle, 0.0);
-        vec4 parts = sin(abs(turns - after));
-        if (pieces > 1.0) by = parts.x * from + parts.y * to, end = parts.z * from + parts.w * to;
+        vec4 parts = (pieces > 1.0 ? sin(abs(turns - after)) : vec4(1.0, 1.0, 0.0, 1.0)) * ends.xyxy;
+        vec3 by = (parts.x * from + parts.y * to) / (parts.x + parts.y);
+        vec3 end = (parts.z * from + parts.w * to) / (parts.z + parts.w);
+        if (radius > 0.0) by = area_onto(by, center, radius), end = area_onto(end, center, radius);
         area_piece(cap, surface, area_cap(surface, by), area_cap(surface, end));
     }
 }
 
 // A corner in the axes of a surface, of a polygon that has the area of the light; or the place on its arc.
 vec3 area_seen(AreaLight lamp, AreaSurface surface, int corner, bool on_arc) {
-    return surface.frame * area_corner(lamp, corner % area_corners(lamp), on_arc);
+    int number = corner % area_corners(lamp);
+    vec3 seen = surface.frame * area_corner(lamp, number, on_arc);
+    if (lamp.cut && number % AREA_RIM == 0) seen.z = 0.0;
+    return seen;
 }
 
-// The sum over the outline above the horizon, from a direction within it. Arcs go over every second corner.
+// The sum over the outline above the horizon, from a direction within it. Arcs go on to every second corner.
 vec2 area_mirrored(AreaLight lamp, AreaSurface surface, vec3 within) {
     int corners = area_corners(lamp);
     AreaSum edges = area_begin(area_seen(lamp, surface, 0, true));
     AreaCap cap = AreaCap(area_cap(surface, within), area_cap(surface, edges.last), vec3(0.0));
+    edges.enters = edges.leaves = lamp.cut;
+    if (lamp.cut) edges.entry = edges.last, edges.leave = area_seen(lamp, surface, AREA_RIM, true);
+    float radius = length(lamp.across);
     for (int number = 0; number < corners;) {
         bool below = edges.last.z <= 0.0, curved = false;
-        vec3 from = edges.last, by = from, to = area_seen(lamp, surface, number + 1, false);
+        vec3 from = edges.last, to = area_seen(lamp, surface, number + 1, false), center = vec3(0.0);
         if (area_is_round(lamp, number)) {
-            vec3 middle = area_seen(lamp, surface, number + 1, true), after = area_seen(lamp, surface, number + 2, true);
-            curved = min(from.z, min(middle.z, after.z)) > 0.0 && area_near(surface, from, after) > AREA_STRAIGHT;
-            if (curved) by = middle, to = after;
+            vec3 after = area_seen(lamp, surface, number + 2, true);
+            float low = min(from.z, min(area_seen(lamp, surface, number + 1, true).z, after.z));
+            curved = lamp.cut || low > 0.0;
+            float end = lamp.kind == AREA_DISC ? 0.0 : number < AREA_ARC ? 1.0 : -1.0;
+            if (curved) to = after, center = surface.frame * (lamp.middle + end * lamp.along);
         }
         number += curved ? 2 : 1;
         if (curved) edges.last = to;
         else if (area_next(edges, to)) from = edges.from, to = edges.to;
         else continue;
         if (below) cap.at = area_cap(surface, from);
-        area_outline(cap, surface, from, by, to, curved, AREA_PIECE);
+        area_outline(cap, surface, from, to, center, curved ? radius : 0.0, AREA_PIECE);
     }
     if (edges.enters && edges.leaves) {
         cap.at = area_cap(surface, edges.leave);
-        area_outline(cap, surface, edges.leave, edges.entry, edges.entry, false, AREA_LOW_PIECE);
+        area_outline(cap, surface, edges.leave, edges.entry, vec3(0.0), 0.0, AREA_LOW_PIECE);
     }
     return (cap.sums.x < 0.0 ? -1.0 : 1.0) * cap.sums.yz / (PI * (1.0 + surface.stretched.z));
 }
 
 // Adds a light: the part of a cosine that it covers, and what is mirrored.
 void area_add(AreaLight lamp, AreaSurface surface, vec3 f0, inout vec3 fallen, inout vec3 mirrored) {
+    if (lamp.kind == AREA_DISC) area_cut(lamp, transpose(surface.frame)[2]);
     if (lamp.radiance == vec3(0.0)) return;
     int corners = area_corners(lamp);
     AreaSum edges = area_begin(area_seen(lamp, surface, 0, false));

@@ -142,6 +142,19 @@ def test_metals_at_every_angle(run, roughness):
     assert np.percentile(np.abs(errors), 98) < 1e-2 and np.max(np.abs(errors)) < 5e-2
 
 
+@pytest.mark.parametrize(
+    ("roughness", "place", "way", "size"),
+    [(0.1, (0.96, 1.39, 0.51), (-0.47, -1.03, -0.19), 0.61), (0.2, (-0.39, -0.99, 0.98), (-0.19, 0.88, -0.19), 0.66)],
+)
+def test_the_rim_of_a_disc_is_round_on_polished_metal(run, roughness, place, way, size):
+    """Where the horizon cuts it, or a lobe is narrower than the rim: as a polygon it was off by 0.06 and 0.04."""
+    light, ground = Light(LightKind.DISC, place, way, size=size, intensity=np.pi * size**2), floor(1.0)
+    _, specular = integrate(light, roughness, 1.0, 256, ground)
+    assert specular.max() > 0.6
+    found = render(run, (light,), "specular_light", ground, roughness=roughness, metal=1.0)
+    np.testing.assert_allclose(found, specular, atol=2e-3)
+
+
 def test_a_far_light_is_bright_wherever_it_is_seen(run):
     """On the cap it is so small that its middle and its outline are one place to a float."""
     random = np.random.default_rng(1)
