@@ -116,14 +116,14 @@ def test_diffuse_light_is_the_integral_over_the_light(run, name):
 @pytest.mark.parametrize("roughness", [0.2, 0.45, 0.8])
 @pytest.mark.parametrize("name", LIGHTS)
 def test_reflections_are_the_integral_over_the_light(run, name, roughness):
-    """To 4e-3 of the light's radiance, and to 1e-2 where the horizon cuts a light."""
+    """To 2e-3 of the light's radiance, and to 7e-3 where the horizon cuts a light."""
     light = LIGHTS[name]
     _, specular = integrate(light, roughness, 0.04, count_places(name, roughness))
     found = render(run, (light,), "specular_light", roughness=roughness)
-    np.testing.assert_allclose(found, specular, atol=1e-2 if "sunken" in name else 4e-3)
+    np.testing.assert_allclose(found, specular, atol=7e-3 if "sunken" in name else 2e-3)
 
 
-@pytest.mark.parametrize(("roughness", "most"), [(0.45, 1e-2), (0.8, 4e-3), (1.0, 4e-3)])
+@pytest.mark.parametrize(("roughness", "most"), [(0.45, 7e-3), (0.8, 2.5e-3), (1.0, 2e-3)])
 @pytest.mark.parametrize("name", LIGHTS)
 def test_metals_reflect_all_light_in_their_color(run, name, roughness, most):
     light = LIGHTS[name]
@@ -134,12 +134,12 @@ def test_metals_reflect_all_light_in_their_color(run, name, roughness, most):
 
 @pytest.mark.parametrize("roughness", [0.35, 0.6])
 def test_metals_at_every_angle(run, roughness):
-    """Surfaces up to 85 degrees from the eye, of which many see a part of a light: 98 of 100 to 1e-2."""
+    """Surfaces up to 85 degrees from the eye, of which many see a part of a light: 98 of 100 to 2e-3, all to 1e-2."""
     ground, errors = floor(1.0), []
     for name, light in LIGHTS.items():
-        _, specular = integrate(light, roughness, 1.0, count_places(name, 0.2) * 2 // 3, ground)
+        _, specular = integrate(light, roughness, 1.0, 256 if "sunken" in name else 64, ground)
         errors.append(render(run, (light,), "specular_light", ground, roughness=roughness, metal=1.0) - specular)
-    assert np.percentile(np.abs(errors), 98) < 1e-2 and np.max(np.abs(errors)) < 5e-2
+    assert np.percentile(np.abs(errors), 98) < 2e-3 and np.max(np.abs(errors)) < 1e-2
 
 
 @pytest.mark.parametrize(
