@@ -156,6 +156,7 @@ def test_code_in_a_file_is_a_draft_until_it_is_saved(filed: Session, tmp_path: P
     more = GAIN.replace("k;", "k * 2.0;")
     filed.apply(SetCode("gain", more))
     assert filed.code_files.drafts == {file: more} and filed.dirty and file.read_text() == GAIN
+    assert filed.history.steps[-1] == "Edit code of gain"
     inside = next(item for item in filed.root.nodes.values() if hasattr(item, "graph"))
     assert [coding.read_node_code(item, "", sandbox=UNRESTRICTED).text for item in inside.graph.nodes.values()] == [
         more
