@@ -118,8 +118,10 @@ def test_defaults_that_nobody_wrote() -> None:
             {"NAME": "number", "TYPE": "float"},
             {"NAME": "above", "TYPE": "float", "MIN": 2.0, "MAX": 5.0},
             {"NAME": "below", "TYPE": "float", "MIN": -5.0, "MAX": -1.0},
+            {"NAME": "how_much_noise", "TYPE": "float", "MIN": 0.0, "MAX": 1.0},
         )
     )
+    assert kind.values["how_much_noise"].label == "how much noise"
     assert {name: value.default for name, value in kind.values.items() if name != "light"} == {
         "point": (4.0, 10.0),
         "free": (0.0, 0.0),
@@ -127,6 +129,7 @@ def test_defaults_that_nobody_wrote() -> None:
         "number": 0.0,
         "above": 2.0,
         "below": -1.0,
+        "how_much_noise": 0.0,
     }
 
 

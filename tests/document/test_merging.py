@@ -20,8 +20,9 @@ from halation.document.diff_merge import (
     resolve_conflicts,
 )
 from halation.document.diff_merge.aligning import align_three
+from halation.document.diff_merge.conflicts import Conflict, add_conflicts
 from halation.document.diff_merge.lines import merge_lines
-from halation.document.diff_merge.parts import equals, get_part, is_tree, parts_of
+from halation.document.diff_merge.parts import ABSENT, equals, get_part, is_tree, parts_of
 from halation.errors import UsageError
 from halation.graph import Graph, Port, problems, signature
 from halation.nodes import catalogue
@@ -305,3 +306,14 @@ def test_a_damaged_marker_is_a_problem_and_not_a_crash(marker: Any) -> None:
     named = [problem for problem in problems(graph) if problem.rule.name == "unmerged"]
     assert len(named) == (1 if marker else 0)
     assert json.loads(merge_graphs(graph, graph, made(BASE, conflicts=marker, later=1)).text)["conflicts"] == marker
+
+
+def test_new_conflicts_take_the_place_of_those_at_the_same_part_only() -> None:
+    first, second = PartPath(("nodes", "bloom", "values", "sigma")), PartPath(("nodes", "fog", "muted"))
+    old = add_conflicts({}, {first: Conflict(first, 1.0, 2.0, 3.0), second: Conflict(second, False, True, ABSENT)})
+    new = add_conflicts(old, {first: Conflict(first, 2.0, 5.0, 7.0)})
+    assert {conflict.at: (conflict.base, conflict.ours, conflict.theirs) for conflict in read_conflicts(new)} == {
+        second: (False, True, ABSENT),
+        first: (2.0, 5.0, 7.0),
+    }
+    assert len(new["conflicts"]) == 2 and add_conflicts(old, {}) is old
