@@ -7,6 +7,7 @@ so the effect is made to show the bytes of a number: its sign, exponent and the 
 from __future__ import annotations
 
 import importlib.util
+import json
 import os
 import re
 import shutil
@@ -261,3 +262,22 @@ def test_names_are_text(cli, graphs, tmp_path: Path) -> None:
 @needs_slang
 def test_what_reshade_cannot_hold_is_refused(cli, graphs, tmp_path: Path) -> None:
     refuse_unfit_graphs(cli, graphs, tmp_path / "no.fx", "reshade")
+
+
+@needs_slang
+def test_lists_that_are_too_long_keep_their_numbers(cli, tmp_path: Path) -> None:
+    """Letters that turn change thousands of numbers: they are stored as of one frame, and a note says so."""
+    graph = {
+        "halation": 1,
+        "nodes": {"title": {"type": "text", "values": {"text": "many letters\nin two lines", "size": 0.2}}},
+        "outputs": {"image": {"type": "Image"}},
+        "links": {"outputs.image": "title.out"},
+        "animation": {"title.rotation": {"expression": "frame"}},
+        "settings": {"frames": [1, 24]},
+    }
+    (tmp_path / "title.json").write_text(json.dumps(graph))
+    result = cli("export", tmp_path / "title.json", "-o", tmp_path / "title.fx", "--size", "480x270", "--json")
+    assert result.code == 0, result.err
+    assert "it shows one frame: time changes lists of more than 4096 numbers" in str(result.json)
+    text = (tmp_path / "title.fx").read_text("utf-8")
+    assert len(text) < 1 << 20 and "still_frame" not in text

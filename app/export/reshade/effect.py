@@ -48,6 +48,13 @@ def write_effect(package: Package, order: ExportOrder, stem: str) -> Effect:
     return _EffectWriter(package, order, stem).write()
 
 
+MOST_NUMBERS = 4096
+"""Numbers of a list that a control may change. Each four of them are a branch of one program; one with 17,000 branches
+has 43 MB of text. A choice."""
+
+_TOO_MANY = f"it changes lists of more than {MOST_NUMBERS} numbers, as letters that move do"
+
+
 class _EffectWriter(Struct, dict=True):
     package: Package
     order: ExportOrder
@@ -96,13 +103,27 @@ class _EffectWriter(Struct, dict=True):
 
     def _write_values(self) -> tuple[list[str], dict[str, str]]:
         """The lines of what a user changes, and the expression of each knob."""
-        document, ranges = self.package.document, self._find_ranges()
-        lines, knobs = write_controls(document["controls"], ranges)
+        document, ranges, heavy = self.package.document, self._find_ranges(), self._find_heavy_knobs()
+        for control in document["controls"]:
+            if heavy & {knob["name"] for knob in control["knobs"]}:
+                self.notes.append(f"control '{control['name']}' keeps its value: {_TOO_MANY}")
+        light = [item for item in document["controls"] if not heavy & {knob["name"] for knob in item["knobs"]}]
+        lines, knobs = write_controls(light, ranges)
         first, last = document["frames"]
-        if last > first and FRAME not in ranges:
+        if last > first and FRAME in heavy:
+            self.notes.append(f"it shows one frame: time {_TOO_MANY.removeprefix('it ')}")
+        elif last > first and FRAME not in ranges:
             lines += write_time(document)
             knobs[FRAME] = "frame()"
         return lines, knobs
+
+    def _find_heavy_knobs(self) -> set[str]:
+        """Knobs that change longer lists than a program can compute: a branch for each four numbers."""
+        slots = self.package.document["slots"]
+        lists = [slots[surface["numbers"]] for surface in self.plan["surfaces"] if "numbers" in surface]
+        long_lists = [record for record in lists if len(record["base"]) > MOST_NUMBERS]
+        curves = {curve["knob"] for record in long_lists for curve in record.get("curves", ())}
+        return curves | {knob for record in long_lists for grid in record.get("grids", ()) for knob in grid["knobs"]}
 
     def _find_ranges(self) -> dict[str, tuple[float, float]]:
         """The span around the graph's value of each knob that changes passes: an effect has one list of passes."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 from msgspec import Struct, field
@@ -19,6 +18,31 @@ ROW = 256
 
 _FOUR = 4
 """Numbers in each cell: the channels of a pixel."""
+
+
+class _SlotNumbers(Struct, frozen=True):
+    """The numbers of a slot as arrays, whose last axis counts them, by what the controls of an effect change."""
+
+    base: Array
+    curves: Sequence[tuple[Record, Array]]
+    """With the numbers at each place of a knob."""
+    grids: Sequence[tuple[Record, Array]]
+    """With the numbers at each pair of places of two knobs."""
+    is_product: bool
+    is_whole: bool
+
+    @staticmethod
+    def read(record: Record, knobs: Mapping[str, str]) -> _SlotNumbers:
+        """Those of a slot; what other knobs change is left out."""
+        curves = [curve for curve in record.get("curves", ()) if curve["knob"] in knobs]
+        grids = [grid for grid in record.get("grids", ()) if all(knob in knobs for knob in grid["knobs"])]
+        return _SlotNumbers(
+            np.array(record["base"], np.float64),
+            [(curve, np.array(curve["values"], np.float64)) for curve in curves],
+            [(grid, np.array(grid["values"], np.float64)) for grid in grids],
+            record.get("mode") == "multiply",
+            bool(record.get("whole")),
+        )
 
 
 class NumberPicture(Struct):
@@ -46,10 +70,10 @@ class NumberPicture(Struct):
         """The first cell of a slot; each cell has `width` of its numbers."""
         key = slot, width
         if key not in self._first_cells:
-            first, numbers = self.count, len(self.slots[slot]["base"])
-            self._first_cells[key] = first
-            for at in range(0, numbers, width):
-                self._write_cell(slot, at, width)
+            self._first_cells[key] = self.count
+            numbers = _SlotNumbers.read(self.slots[slot], self.knobs)
+            for at in range(0, len(numbers.base), width):
+                self._write_cell(numbers, at, width)
         return self._first_cells[key]
 
     def write(self) -> list[str]:
@@ -73,31 +97,25 @@ class NumberPicture(Struct):
             "}",
         ]
 
-    def _write_cell(self, slot: int, at: int, width: int) -> None:
-        record = self.slots[slot]
+    def _write_cell(self, numbers: _SlotNumbers, at: int, width: int) -> None:
+        def take(rows: Array) -> Array:
+            part = rows[..., at : at + width]
+            return np.pad(part, [(0, 0)] * (part.ndim - 1) + [(0, _FOUR - part.shape[-1])])
 
-        def take(row: Any) -> Array:
-            part = np.asarray(row, np.float64)[at : at + width]
-            return np.pad(part, (0, _FOUR - len(part)))
-
-        base = take(record["base"])
+        base = take(numbers.base)
         lines = [f"    float4 base = {write_four(base)}, sum = base;"]
-        is_product = record.get("mode") == "multiply"
-        for curve in record.get("curves", ()):
-            if curve["knob"] not in self.knobs:
-                continue
-            rows = np.array([take(row) for row in curve["values"]])
+        for curve, whole_rows in numbers.curves:
+            rows = take(whole_rows)
             if np.abs(rows - base).max() > 0.0:
                 row = self._write_curve(curve, rows)
-                if is_product:  # where the base is 0 there is no ratio, and the number is added
+                if numbers.is_product:  # where the base is 0 there is no ratio, and the number is added
                     zeros = write_four((base == 0.0).astype(np.float64))
                     lines.append(f"    {{ float4 row = {row}; sum = sum * relative(row, base) + row * {zeros}; }}")
                 else:
                     lines.append(f"    sum += {row} - base;")
-        for grid in record.get("grids", ()):
-            if all(knob in self.knobs for knob in grid["knobs"]):
-                lines += self._write_grid(grid, take)
-        lines.append("    return floor(sum + 0.5);" if record.get("whole") else "    return sum;")
+        for grid, whole_rows in numbers.grids:
+            lines += self._write_grid(grid, take(whole_rows))
+        lines.append("    return floor(sum + 0.5);" if numbers.is_whole else "    return sum;")
         self.code += [f"float4 cell_{self.count}() {{", *lines, "}"]
         self.count += 1
 
@@ -117,11 +135,10 @@ class NumberPicture(Struct):
         ]
         return f"({write_four(rows[0])}{''.join(steps)})"
 
-    def _write_grid(self, grid: Record, take: Any) -> list[str]:
+    def _write_grid(self, grid: Record, rows: Array) -> list[str]:
         """Lines that add the number between four places: polygons along the second knob, joined along the first one."""
         (xs, ys), (first, second) = grid["at"], grid["knobs"]
-        rows = [np.array([take(row) for row in line]) for line in grid["values"]]
-        if max(np.abs(line).max() for line in rows) == 0.0:
+        if np.abs(rows).max() == 0.0:
             return []
         curves = [self._write_curve({"at": ys, "knob": second}, line) for line in rows]
         x = self.knobs[first]
