@@ -45,7 +45,7 @@ DAILY, NIGHTLY = (0, 3), (1, 2)
 
 STEPS = {"halftone": 0.005, "distance_field": 0.005, "deferred_lighting": 0.002}
 """Nodes that decide by thresholds or between equally near places: the part of pixels that rounding decides. Among
-random normals, inputs that differ by 6e-8 make other neighbors the surfaces of a pixel, and its light differs by .15."""
+random normals, inputs that differ by 6e-8 let other neighbors be the surfaces of a pixel: its light differs by .15."""
 
 OFTEN = ["agx_look", "crt_television", "glitch_art", "neon_edges", "risograph", "soft_bloom", "watercolor"]
 SELDOM = ["anamorphic_flares", "auto_exposed", "bleach_bypass", "burning_page", "cinematic_grade", "comic_ink",
