@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ...errors import GraphError
-from ...graph import Graph, Group
+from ...graph import OUTPUTS, Graph, Group, Port
 from ...language.translation import translate
 from ..edits import folding, grouping, naming, paths, ungrouping
 from ..edits.element_id import ElementId
@@ -20,9 +20,9 @@ class MakeGroup(EditCommand[str], frozen=True):
     name: str = ""
 
     def apply(self, document: OpenDocument) -> Edited[str]:
-        before = document.graph
-        graph, id = grouping.make_group(before, document.selection, self.name)
-        leaving = {before.links[end]: start for end, start in graph.links.items() if start.node == id}
+        graph, id = grouping.make_group(document.graph, document.selection, self.name)
+        links = folding.find_group(graph, id).graph.links.items()
+        leaving = {start: Port(id, end.socket) for end, start in links if end.node == OUTPUTS}
         return Edited(
             translate("Group {elements}", elements=naming.describe_elements(document.selection)),
             id,

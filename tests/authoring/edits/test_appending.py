@@ -86,6 +86,14 @@ def test_the_viewer_goes_along_where_it_shows_what_feeds_the_new_node(session: S
     assert session.views.find_port() == Port("group", "out")
     session.undo()
     assert session.views.find_port() == Port(second, "out")
+    session.select(())
+    lone = append(session, "roto")
+    session.views.show(Port(lone, "out"))
+    session.apply(MakeGroup())  # of what nobody reads
+    assert session.views.find_port() == Port("group", "out")
+    session.undo()
+    session.views.show(Port(second, "out"))
+    session.select([ElementId(second)])
     append(session, "merge")  # its background is not linked yet
     assert session.views.find_port() == Port(second, "out")
     session.select([ElementId(first)])
