@@ -99,6 +99,7 @@ def test_pixels_are_those_of_a_window_that_is_drawn_whole(window: Window) -> Non
         painter = window._painter
         while True:  # until nothing comes in between, such as a tooltip that waits for a while
             yield from settle(window)
+            yield from wait(20)  # scopes come some frames after the picture, into the same triangles
             partial, lists = (
                 window.device.read_window(measure_window()).copy(),
                 [drawn.memory for drawn in painter._lists],
