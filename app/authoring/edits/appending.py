@@ -52,8 +52,8 @@ def append_node(
     feeders = list(feeders)
     for element in feeders:
         graph = connect_alike(graph, element, id, absent)
-    fed = {source.node for target, source in graph.links.items() if target.node == id}
     graph = connect_layers(graph, id, feeders, absent)
+    fed = {ElementId.of_port(source) for target, source in graph.links.items() if target.node == id}
     for element in feeders:
         graph = graph if element in fed else _feed_first(graph, element, id, absent)
     sources = [source for target, source in graph.links.items() if target.node == id]

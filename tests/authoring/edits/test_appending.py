@@ -222,5 +222,9 @@ def test_inputs_of_the_graph_are_layers_too(session: Session) -> None:
     session.apply(ReplaceGraph("Start", graph))
     session.select(ElementId("bloom"))
     assert feeders_of(session, append(session, "depth_of_field")) == {"image": "bloom.out", "depth": "inputs.depth"}
+    session.select(ElementId("inputs.depth"))
+    alone = append(session, "depth_of_field")
+    assert feeders_of(session, alone) == {"depth": "inputs.depth"}, "it feeds no second socket"
+    session.select(ElementId("bloom"))
     # a matte is somebody's choice, no fact of the render
     assert "matte" not in feeders_of(session, append(session, "set_matte"))
