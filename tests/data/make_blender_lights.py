@@ -1,9 +1,9 @@
 """Makes blender_lights.npz: a ball, a box and a rod on a floor, lit by Cycles in four ways, and their layers.
 
 A sun and a point lamp without shadows, a white sky and the sky of a courtyard, all without bounces and unblocked, as
-relighting sees them. The rod is six pixels wide. make_blender_lens.py says how to run it; the last argument is an HDRI
-by longitude and latitude (the sky of the file: Poly Haven, CC0, made smaller to 128 x 64). Light is stored as half
-floats.
+relighting sees them. The rod is six pixels wide. A second picture of each, with other samples, tells how noisy one of
+64 samples is. make_blender_lens.py says how to run it; the last argument is an HDRI by longitude and latitude (the sky
+of the file: Poly Haven, CC0, made smaller to 128 x 64). Light is stored as half floats.
 """
 
 from __future__ import annotations
@@ -20,6 +20,8 @@ import OpenImageIO as oiio
 WIDTH, HEIGHT = 128, 96
 LIGHTS = {"sun": 64, "lamp": 64, "white": 64, "sky": 2048}
 """How the scene is lit, and with how many samples: only those of the sky are noisy."""
+AGAIN = 64
+"""Samples of the second picture of each light, whose samples lie elsewhere."""
 
 
 def make_material(name: str, color: tuple[float, float, float]):
@@ -108,6 +110,12 @@ def render(scene, path: Path) -> dict[str, np.ndarray]:
     return layers
 
 
+def render_again(scene, path: Path) -> np.ndarray:
+    """The light of the same scene from other samples."""
+    scene.cycles.samples, scene.cycles.seed = AGAIN, 1
+    return render(scene, path)["Combined"][..., :3].astype(np.float16)
+
+
 def main() -> None:
     arrays = {}
     with tempfile.TemporaryDirectory() as name:
@@ -121,6 +129,7 @@ def main() -> None:
             scene.cycles.samples = samples
             layers = render(scene, Path(name) / "layers.exr")
             arrays[kind] = layers["Combined"][..., :3].astype(np.float16)
+            arrays[f"{kind}_again"] = render_again(scene, Path(name) / "again.exr")
             if kind == "sun":
                 way = bpy.context.object.matrix_world.to_3x3().col[2]
                 arrays["sun_direction"] = -np.asarray(way, np.float64)
