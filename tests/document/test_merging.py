@@ -213,6 +213,22 @@ def test_keys_of_both_sides() -> None:
     assert found["animation"]["light.stops"]["keys"] == [key(1, 0.5), key(4, 2.0), key(9, 1.0)]
 
 
+@pytest.mark.parametrize(
+    ("ours", "theirs", "place"),
+    [
+        ({"x": 5, "y": 5}, {"x": 7, "y": 0}, {"x": 5, "y": 5}),  # both moved it
+        ({"x": 0, "y": 5}, {"x": 7, "y": 0}, {"x": 7, "y": 5}),  # each in another direction
+        (None, {"x": 7, "y": 0}, {"x": 7, "y": 0}),  # one forgot the place that the other chose
+        ({"x": 5, "y": 5}, None, {"x": 5, "y": 5}),
+    ],
+)
+def test_of_two_places_ours_counts_and_one_counts_more_than_none(
+    ours: dict[str, int] | None, theirs: dict[str, int] | None, place: dict[str, int]
+) -> None:
+    found = merge_graphs(made(BASE), *(made(BASE, **{"ui/nodes/blur": side}) for side in (ours, theirs)))
+    assert not found.conflicts and json.loads(found.text)["ui"]["nodes"]["blur"] == place
+
+
 def test_a_renamed_node_takes_what_the_other_changed() -> None:
     renamed = made(BASE).rename("blur", "soft")
     theirs = made(BASE, **{"nodes/blur/values": {"sigma": 7.0}})
