@@ -1,5 +1,6 @@
 """Which tests a fault is shown to: those that reach its file, the nearest first.
 
+Where `reach.py` has recorded which tests run a line, those come first, and other tests of recorded files are left out.
 A test file reaches what `--changed` finds by its imports (`changes.py`), what these modules import in turn, and the
 command that it runs by its name. Of the tests that drive the real editor, which takes minutes, it sees those named
 after the folder or the file. A function of exported scripts is text that no module imports: it is tried by the cases
@@ -13,14 +14,19 @@ import re
 from collections import defaultdict
 from collections.abc import Collection
 from functools import cache
+from itertools import accumulate
 from pathlib import Path
 
 from changes import TESTS, covers, list_helpers
 from import_graph import MODULES, ROOT, links, name_of, targets
+from mutation.reach import list_runners, read_record
 from selection import LIST
 
 FILES = 12
 """The most test files that see a fault, the nearest ones: what is basic is imported by all."""
+
+RUNNING_SECONDS = 60.0
+"""Seconds of a processor for tests that were seen to run a line; one quick test alone takes up to thirty."""
 
 SLOW_FILES = 6
 """The test files whose slow tests see a fault too: those of twelve files take two minutes."""
@@ -52,9 +58,21 @@ def select_tests(path: Path, line: int) -> list[list[str]]:
     tests = list_tests(path)
     listed = [name for name in LIST.read_text("utf-8").split() if name.partition("::")[0] in tests]
     slow = [name for name in listed if name.partition("::")[0] in tests[:SLOW_FILES]]
-    driving = list_driving_tests(path)
-    quick = [*tests, *(f"--deselect={name}" for name in listed)] if tests else []
-    return [words for words in (quick, slow, driving) if words]
+    if runners := choose_runners(path, line, tests):
+        recorded = {name.partition("::")[0] for name in read_record()[1]}
+        tests = [test for test in tests if test not in recorded]
+    quick = [*tests, *(f"--deselect={name}" for name in listed if name.partition("::")[0] in tests)] if tests else []
+    return [words for words in (runners, quick, slow, list_driving_tests(path)) if words]
+
+
+def choose_runners(path: Path, line: int, near: list[str]) -> list[str]:
+    """The tests that were seen to run a line: those of near files first, then those that run little else."""
+    if path.suffix != ".py" or not (counts := list_runners(path, line)):
+        return []
+    places, seconds = {test: place for place, test in enumerate(near)}, read_record()[1]
+    names = sorted(counts, key=lambda name: (places.get(name.partition("::")[0], FILES), counts[name]))
+    ends = accumulate(seconds[name] for name in names)
+    return [name for name, end in zip(names, ends, strict=True) if end - seconds[name] <= RUNNING_SECONDS]
 
 
 def list_tests(path: Path) -> list[str]:

@@ -1,7 +1,7 @@
 """Which tests run which lines: recorded once, so that a fault is shown to the tests that run it.
 
-    nice .venv/bin/python tests/mutation/reach.py                 # the rooms that faults are shown to
-    nice .venv/bin/python tests/mutation/reach.py tests/graph     # these anew, the others as they were
+    nice .venv/bin/python tests/mutation/reach.py                 # `./dev test --fast`
+    nice .venv/bin/python tests/mutation/reach.py tests/media     # these anew, the others as they were
 
 In a copy of the tree, each block of Python (a body of a function, a branch, a loop) begins with a call that notes it
 for the test that runs. That takes a tenth more time, where tracing every line takes several times as much. Commands
@@ -31,13 +31,6 @@ from source_trees import ROOT, copy_tree, run_in_tree
 
 RECORD = ROOT / "out/mutation/reach.npz"
 """The names of tests, their seconds, and pairs of a block and a test."""
-
-ROOMS = (
-    "application", "authoring", "cli", "cluster", "color", "compiler", "custom_nodes", "document", "editor", "fit",
-    "graph", "inputs", "language", "lint", "media", "nodes", "plugins", "regression", "render_layers", "renderer",
-    "resources", "serving", "watch", "test_errors.py", "test_misuse.py", "test_public_api.py",
-)  # fmt: skip
-"""Tests that are recorded."""
 
 NOTED = "app", "nodes"
 """Folders whose blocks are noted."""
@@ -106,7 +99,9 @@ def pytest_runtest_protocol(item):
 def list_blocks(tree: ast.Module) -> Iterator[tuple[str, int, list[ast.stmt], Functions | None]]:
     """Every block of functions: the function's name, the lines from its first to the block's, and its statements."""
 
-    def visit(node: ast.AST, name: str, function: Functions | None) -> Iterator[tuple[str, int, list, Functions | None]]:
+    def visit(
+        node: ast.AST, name: str, function: Functions | None
+    ) -> Iterator[tuple[str, int, list, Functions | None]]:
         if isinstance(node, Functions | ast.ClassDef):
             name = f"{name}.{node.name}"
         function = node if isinstance(node, Functions) else None if isinstance(node, ast.ClassDef) else function
@@ -182,7 +177,7 @@ def _count_blocks() -> dict[int, int]:
     return counts
 
 
-def record(rooms: list[str]) -> None:
+def record(choice: list[str]) -> None:
     """Run tests in a copy that notes what they run, and keep that."""
     with tempfile.TemporaryDirectory() as folder:
         tree, notes, hook = (Path(folder, name) for name in ("tree", "notes", "tree-path"))
@@ -199,7 +194,7 @@ def record(rooms: list[str]) -> None:
         (hook / "noting_plugin.py").write_text(_PLUGIN)
         words = ["-m", "pytest", "-q", "-p", "noting_plugin", "-p", "no:cacheprovider", "--tb=line", "-n", "2"]
         env = {**os.environ, "PYTHONPATH": str(hook)}
-        subprocess.run([sys.executable, *words, "--dist=loadfile", *rooms], cwd=tree, env=env, check=False)
+        subprocess.run([sys.executable, *words, "--dist=loadfile", *choice], cwd=tree, env=env, check=False)
         _keep(notes)
 
 
@@ -228,4 +223,4 @@ def _keep(notes: Path) -> None:
 
 
 if __name__ == "__main__":
-    record(sys.argv[1:] or [f"tests/{room}" for room in ROOMS])
+    record(sys.argv[1:] or ["--fast", "tests"])

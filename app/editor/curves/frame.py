@@ -100,10 +100,9 @@ def color_of(context: CurvesContext, row: CurveRow, channel: int, place: int) ->
     """The color of a curve: red, green and blue for channels, for numbers one of five in turn."""
     palette = context.palette
     if row.channels:
-        dark = palette.name == "dark"
         lanes: tuple[RGB, ...] = (
             ((0.93, 0.42, 0.42), (0.45, 0.78, 0.44), (0.45, 0.64, 0.98))
-            if dark
+            if palette.is_dark
             else ((0.78, 0.16, 0.16), (0.13, 0.50, 0.16), (0.12, 0.33, 0.80))
         )
         return lanes[channel] if channel < 3 else mix(palette.text, palette.panel, 0.3)

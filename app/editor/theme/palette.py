@@ -45,6 +45,11 @@ class Palette(Struct, frozen=True):
     categories: Mapping[str, RGB]
     """The header color of nodes by menu; "" for other menus."""
 
+    @property
+    def is_dark(self) -> bool:
+        """True if what is drawn on panels is brighter than they are."""
+        return sum(self.panel) < 1.5
+
     def category(self, name: str) -> RGB:
         """The header color of a node of that menu."""
         return category_color(name, self.categories)

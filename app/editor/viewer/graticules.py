@@ -16,14 +16,9 @@ _SMALL = 0.78
 """The size of labels, as a fraction of other text."""
 
 
-def is_dark(palette: Palette) -> bool:
-    """True if traces glow on black, False if they are ink on white."""
-    return sum(palette.panel) < 1.5
-
-
 def back(palette: Palette) -> RGB:
-    """Draw the background of a scope."""
-    return min(palette.border, palette.window) if is_dark(palette) else palette.field
+    """Draw the background of a scope: traces glow on black, or are ink on white."""
+    return min(palette.border, palette.window) if palette.is_dark else palette.field
 
 
 def level_lines(lines: imgui.ImDrawList, palette: Palette, box: Box, low: float, high: float) -> None:

@@ -161,9 +161,7 @@ class ScopesPanel:
         plate = self._plates.get(name) or self._plates.setdefault(
             name, PlateTexture(self._context.preview.renderer.device)
         )
-        pixels = self._image(
-            name, self._rgb, self._context.viewer.scopes_logarithmic, graticules.is_dark(self._context.palette)
-        )
+        pixels = self._image(name, self._rgb, self._context.viewer.scopes_logarithmic, self._context.palette.is_dark)
         self._textures[name] = plate.show(pixels).native_handle
 
     def _measure_pixels(self, image: DisplayedImage) -> np.ndarray:

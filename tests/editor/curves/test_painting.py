@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import colorsys
 import math
 from collections.abc import Callable
 from contextlib import contextmanager
@@ -297,3 +298,27 @@ def test_frames_of_the_ruler_have_lines_and_numbers(monkeypatch) -> None:
     below = {(y0, y1) for _, y0, _, y1 in panel.lines if y1 != 480.0}
     assert below == {(468.0, 476.0), (471.0, 476.0)}
     assert math.isclose(len([1 for _, y0, _, _ in panel.lines if y0 == 468.0]), 11)
+
+
+def measure_light(color: tuple[float, float, float]) -> float:
+    """The relative luminance of a color, as WCAG 2 defines it."""
+    light = [part / 12.92 if part <= 0.03928 else ((part + 0.055) / 1.055) ** 2.4 for part in color]
+    return 0.2126 * light[0] + 0.7152 * light[1] + 0.0722 * light[2]
+
+
+@pytest.mark.parametrize("name", PALETTES)
+def test_curves_of_channels_have_the_color_of_their_channel(name: str) -> None:
+    """Their hues are near those of red, green and blue, as light as WCAG 2.1 (1.4.11) wants lines; alpha is gray."""
+    context: Any = SimpleNamespace(palette=(palette := PALETTES[name]))
+    channels: Any = SimpleNamespace(channels=4)
+    for channel, hue in enumerate((0.0, 1.0 / 3.0, 0.62)):
+        color = frames.color_of(context, channels, channel, 0)
+        assert all(0.0 <= part <= 1.0 for part in color)
+        found, _, saturation = colorsys.rgb_to_hls(*color)
+        assert abs((found - hue + 0.5) % 1.0 - 0.5) < 0.03 and saturation > 0.3
+        bright, dark = sorted((measure_light(color), measure_light(palette.panel)), reverse=True)
+        assert (bright + 0.05) / (dark + 0.05) >= 3.0
+    assert max(gray := frames.color_of(context, channels, 3, 0)) - min(gray) < 0.05
+    numbers: Any = SimpleNamespace(channels=0)
+    shown = [frames.color_of(context, numbers, 0, place) for place in range(6)]
+    assert len({*shown[:5]}) == 5 and shown[5] == shown[0]
