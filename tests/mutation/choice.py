@@ -58,11 +58,12 @@ def select_tests(path: Path, line: int) -> list[list[str]]:
     tests = list_tests(path)
     listed = [name for name in LIST.read_text("utf-8").split() if name.partition("::")[0] in tests]
     slow = [name for name in listed if name.partition("::")[0] in tests[:SLOW_FILES]]
+    driving = list_driving_tests(path)
     if runners := choose_runners(path, line, tests):
         recorded = {name.partition("::")[0] for name in read_record()[1]}
-        tests = [test for test in tests if test not in recorded]
+        tests, driving = ([test for test in some if test not in recorded] for some in (tests, driving))
     quick = [*tests, *(f"--deselect={name}" for name in listed if name.partition("::")[0] in tests)] if tests else []
-    return [words for words in (runners, quick, slow, list_driving_tests(path)) if words]
+    return [words for words in (runners, quick, slow, driving) if words]
 
 
 def choose_runners(path: Path, line: int, near: list[str]) -> list[str]:

@@ -96,12 +96,10 @@ def pytest_runtest_protocol(item):
 """
 
 
-def list_blocks(tree: ast.Module) -> Iterator[tuple[str, int, list[ast.stmt], Functions | None]]:
+def list_blocks(tree: ast.Module) -> Iterator[tuple[str, int, list[ast.stmt], Functions]]:
     """Every block of functions: the function's name, the lines from its first to the block's, and its statements."""
 
-    def visit(
-        node: ast.AST, name: str, function: Functions | None
-    ) -> Iterator[tuple[str, int, list, Functions | None]]:
+    def visit(node: ast.AST, name: str, function: Functions | None) -> Iterator[tuple[str, int, list, Functions]]:
         if isinstance(node, Functions | ast.ClassDef):
             name = f"{name}.{node.name}"
         function = node if isinstance(node, Functions) else None if isinstance(node, ast.ClassDef) else function
