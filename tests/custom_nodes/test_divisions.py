@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from conftest import Run
 from halation.custom_nodes import Code, CodeFault, node_type
-from halation.glsl.divisions import guard_divisions
+from halation.glsl.divisions import MOST_DIVISIONS, guard_divisions
+from halation.glsl.tokens import GlslFault
 from isf_files import isf
 
 LEAST = -(2**31)
@@ -51,6 +52,31 @@ def test_how_divisions_are_written(text: str, guarded: str) -> None:
 )
 def test_what_needs_no_guard_stays_as_it_is(text: str) -> None:
     assert guard_divisions(text) == text
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("\nv[i++] /= w;", "may change nothing else"),
+        ("\nv[i = 2] %= w;", "may change nothing else"),
+        ("\nn = " + " / ".join(["a"] * (MOST_DIVISIONS + 2)) + ";", f"more than {MOST_DIVISIONS} whole numbers"),
+        ("\nswitch (n) { case 1 / int(sin(1.0)): break; }", "a case label divides"),
+    ],
+)
+def test_what_cannot_be_guarded_names_its_line(text: str, sentence: str) -> None:
+    with pytest.raises(GlslFault, match=sentence) as caught:
+        guard_divisions(text)
+    assert caught.value.line == 2
+
+
+def test_as_many_divisions_as_there_may_be() -> None:
+    text = f"n = {' / '.join(['a'] * (MOST_DIVISIONS + 1))};"
+    assert guard_divisions(text).count("halation_quotient(") == MOST_DIVISIONS
+
+
+@pytest.mark.parametrize("text", ["n = (a / b;", "n = a) / b;", "/ b", "a /", "n = a / ;", "f(/)"])
+def test_what_is_no_code_is_left_to_the_driver(text: str) -> None:
+    assert len(guard_divisions(text)) >= len(text)
 
 
 @pytest.mark.parametrize("kind", ["int", "ivec2", "ivec3", "ivec4"])

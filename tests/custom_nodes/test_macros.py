@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from conftest import Run
 from halation.custom_nodes import Code, CodeFault, node_type
+from halation.glsl.conditions import evaluate_condition
 from halation.glsl.macros import MOST_TOKENS, expand_macros
 from halation.glsl.tokens import GlslFault, split_tokens
 
@@ -42,6 +43,7 @@ def bomb(arms: int, levels: int, argument: str = "") -> str:
         ("#if (-2147483647 - 1) / -1\nx\n#endif", "x"),
         ("#ifndef GL_ES\nx\n#endif", "x"),
         ("int a = __LINE__;", "int a = 1 ;"),
+        ("\n__FILE__ __LINE__", "0 2"),
         ("image.r", "image.r"),
     ],
 )
@@ -49,6 +51,28 @@ def test_expansion(text: str, expanded: str) -> None:
     expansion = expand_macros(text)
     assert expansion.count("\n") == text.count("\n")
     assert split_tokens(expansion) == split_tokens(expanded)
+
+
+@pytest.mark.parametrize(
+    ("text", "number"),
+    [
+        ("1 + 2 * 3", 7), ("( 1 + 2 ) * 3", 9), ("2 - 3 - 4", -5), ("7 / 2", 3), ("7 / - 2", -3), ("- 7 / 2", -3),
+        ("- 7 / - 2", 3), ("7 % 3", 1), ("- 7 % 3", -1), ("7 % - 3", 1), ("1 / 0", 0), ("8 % 0", 0), ("0 && 8 / 0", 0),
+        ("1 << 4", 16), ("16 >> 1 >> 2", 2), ("- 8 >> 1", -4), ("2147483647 + 1", -(2**31)), ("65536 * 65536", 0),
+        ("1 | 6 & 3 ^ 2", 1), ("5 ^ 3", 6), ("5 | 3", 7), ("3 & 1 == 1", 1), ("1 || 0 && 0", 1), ("2 && 3", 1),
+        ("0 || 0", 0), ("3 > 2", 1), ("2 > 2", 0), ("2 >= 2", 1), ("2 < 2", 0), ("2 <= 2", 1), ("2 != 2", 0), ("1 < 3 == 1", 1),
+        ("! 3", 0), ("! 0", 1), ("~ 0", -1), ("- - 3", 3), ("+ 4", 4), ("017", 15), ("0x1F", 31), ("5u", 5), ("0", 0),
+        ("name + 1", 1), ("_ + 1", 1),
+    ],
+)  # fmt: skip
+def test_conditions_have_the_numbers_of_c(text: str, number: int) -> None:
+    assert evaluate_condition(text.split(), 1) == number
+
+
+@pytest.mark.parametrize("text", ["", "08", "1 2", "( 1", ")", "1 +", "$", "1.5", "0x", "= 1"])
+def test_what_is_no_condition_is_refused(text: str) -> None:
+    with pytest.raises(GlslFault, match="cannot be read"):
+        evaluate_condition(text.split(), 3)
 
 
 @pytest.mark.parametrize(
@@ -60,6 +84,13 @@ def test_expansion(text: str, expanded: str) -> None:
         ("#define F(x) x\nF(1", 2, "do not end"),
         ("#define P(a, b) a##b\nP(/, /)", 2, "is not one word"),
         ("#define ## 3", 1, "followed by the name"),
+        ("#define defined 1", 1, "followed by the name"),
+        ("#define J a ##", 1, "joins nothing in the macro 'J'"),
+        ("#define J ## a", 1, "joins nothing"),
+        ("#define F(x, x) x", 1, "'F'"),
+        ("#define F(x, 1) x", 1, "'F'"),
+        ("\n#if defined(A B)\n#endif", 2, "must be followed by a name"),
+        ("a # b", 1, "'#' is not allowed here"),
         ("#if 1 +\n#endif", 1, "cannot be read"),
         ("#error it is so", 1, "it is so"),
         ("#nothing", 1, "there is no #nothing"),

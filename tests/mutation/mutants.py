@@ -35,7 +35,7 @@ GLSL = {
 
 COMMUTATIVE = {"add", "multiply", "maximum", "minimum", "hypot", "dist", "gcd", "logical_and", "logical_or",
                "equal"}  # fmt: skip
-"""Functions whose two arguments may change places."""
+"""Functions of numpy and math whose two arguments may change places."""
 
 _TOKEN = re.compile(r"\d+\.\d*(?:[eE][-+]?\d+)?|\.?\d+(?:[eE][-+]?\d+)?|\w+|&&|\|\||[-+*/<>=!]=|<<|>>|\S")
 _IGNORED = re.compile(r"//[^\n]*|/\*.*?\*/|^[ \t]*#(?:[^\n\\]|\\.|\\\n)*|\blayout\s*\(.*?\)", re.S | re.M)
@@ -143,7 +143,7 @@ class _PythonReader:
         if isinstance(node.func, ast.Name) and node.func.id in PAIRS:
             self._replace(node.func, PAIRS[node.func.id])
         elif len(node.args) == 2 and not any(isinstance(part, ast.Starred) for part in node.args):
-            if isinstance(node.func, ast.Attribute) and node.func.attr in COMMUTATIVE and not node.keywords:
+            if self._text(node.func).removeprefix("np.").removeprefix("math.") in COMMUTATIVE:
                 return
             first, second = node.args
             between = self._source[self._at(first, end=True) : self._at(second)]

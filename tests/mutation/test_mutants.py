@@ -23,7 +23,7 @@ def size(count: int | None = 3, *, é: float = 0.5) -> int:  # 1 < 2
         return min(count, 2)
     print(f"{count:03d}")
     class Frozen(int, total=False): ...
-    return "%d" % count if count <= 2 else place(é, count // 7)
+    return "%d" % count if count <= 2 else place(é, count // 7) or np.multiply(é, math.hypot(é, x))
 '''
 
 GLSL = """// a + b
@@ -55,6 +55,7 @@ def test_python_is_changed_where_it_runs() -> None:
         ("é, count // 7", "count // 7, é"),
         ("//", "*"),
         ("7", "8"),
+        ("or", "and"),
     ]
 
 
