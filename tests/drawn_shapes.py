@@ -71,6 +71,9 @@ class DrawnShapes:
         _, size, at, color, text, *wrap = words
         self._add("text", (at,), (size, *wrap, wrap_width)[:2], color, text)
 
+    def add_convex_poly_filled(self, points: Any, color: int) -> None:
+        self._add("polygon", tuple(points), (), color)
+
     def add_quad_filled(self, a: Any, b: Any, c: Any, d: Any, color: int) -> None:
         self._add("quad", (a, b, c, d), (), color)
 
