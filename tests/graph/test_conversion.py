@@ -76,7 +76,9 @@ def test_the_advice_can_be_followed(source: str, target: str) -> None:
 def test_ports_read_and_print() -> None:
     assert Port.parse("bloom.image") == Port("bloom", "image")
     assert str(Port("bloom", "image")) == "bloom.image"
-    for text in ("", "bloom", "bloom.", ".image", "a.b.c"):
+    for text in ("a.b.c.d", "a.b.0", "a.b.c.d.1"):  # a field of an item, and the channels of both
+        assert str(Port.parse(text)) == text and Port.parse(text).whole == Port("a", "b")
+    for text in ("", "bloom", "bloom.", ".image", "a.b.c", "a..b", "a..b.c", "a.b..c", "a.b.c.", ".a.b.c"):
         with pytest.raises(GraphError, match=r"write node\.socket"):
             Port.parse(text)
     assert sorted([Port("b", "a"), Port("a", "b")]) == [Port("a", "b"), Port("b", "a")]
