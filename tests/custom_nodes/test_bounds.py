@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import time
+from collections.abc import Callable
 
 import pytest
 from halation.custom_nodes import Code, CodeFault, node_type
+from halation.glsl.bounds import check_size
+from halation.glsl.tokens import GlslFault
 from isf_files import isf
 
 
@@ -60,6 +63,47 @@ def test_what_is_too_large_is_refused_with_its_line(case: str) -> None:
     with pytest.raises(CodeFault) as caught:
         node_type(Code("glsl", effect(TOO_LARGE[case])))
     assert caught.value.line == 2 and time.process_time() - began < 2.0
+
+
+Maker = Callable[[int], str]
+
+
+def function(body: str, before: str = "") -> str:
+    return f"{before}float f(float x) {{ {body} return x; }}"
+
+
+EDGES: dict[str, tuple[int, Maker]] = {
+    "brackets, with that of the function": (99, lambda n: function(f"x = {'(' * n}x{')' * n};")),
+    "blocks, with that of the function": (99, lambda n: function("{" * n + "}" * n)),
+    "statements": (100, lambda n: function("if (x < 0.0) " * n + "x = 1.0;")),
+    "loops": (100, lambda n: function("for (int i = 0; i < 2; i++) " * n + "x = 1.0;")),
+    "alternatives": (250, lambda n: function("if (x < 0.0) x = 1.0;" + " else if (x < 1.0) x = 2.0;" * n)),
+    "choices, with one assignment": (249, lambda n: function(f"x = {'x < 1.0 ? 1.0 : ' * n}x;")),
+    "assignments": (250, lambda n: function(f"{'x = ' * n}1.0;")),
+    "signs": (32, lambda n: function(f"x = {'- ' * n}x;")),
+    "terms": (4000, lambda n: function(f"x = x{' + x' * n};")),
+    "cases": (256, lambda n: function(f"switch (int(x)) {{ {' '.join(f'case {k}: break;' for k in range(n))} }}")),
+    "members": (32, lambda n: function(f"vec4 v; x = v{'.rgba' * n};")),
+    "places": (32, lambda n: function(f"x = a{'[0]' * n};")),
+    "numbers": (16384, lambda n: function(f"float a[{n}];")),
+    "numbers of two arrays": (8192, lambda n: function(f"float a[{n}], b[{n}];")),
+    "vectors": (16384 // 4, lambda n: function(f"vec4 a[{n}];")),
+    "square matrices": (16384 // 9, lambda n: function(f"mat3 a[{n}];")),
+    "other matrices": (16384 // 8, lambda n: function(f"mat2x4 a[{n}];")),
+    "structs": (16384 // 13, lambda n: function(f"S s[{n}];", "struct S { vec3 v[4]; float w; };")),
+    "an index": (16384, lambda n: function(f"float a[4]; a[{n}] = x;")),
+    "functions": (1000, lambda n: "".join(f"float g{k}(float x) {{ return x; }}\n" for k in range(n))),
+    "calls, from the first function to the last": (101, lambda n: calls(1, n)),
+}
+"""The most of each thing that there may be, as messages say it, and a text with that many."""
+
+
+@pytest.mark.parametrize("case", EDGES)
+def test_bounds_are_where_messages_say(case: str) -> None:
+    most, make = EDGES[case]
+    check_size(make(most))
+    with pytest.raises(GlslFault):
+        check_size(make(most + 1))
 
 
 GROWING = {

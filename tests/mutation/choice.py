@@ -37,6 +37,9 @@ DRIVING_FILES = 3
 SKIPPED_ROOMS = ("bench", "gui", "hostile", "law", "mutation")
 """Rooms of tests that no fault is shown to, the editor's excepted: each takes minutes, or reads the tree itself."""
 
+PAGES = "tests/law/test_generated.py"
+"""Defaults of values and options are in the pages that are made of the code; they are compared in a second."""
+
 DRAWING_ROOMS = ("color", "custom_nodes", "nodes", "renderer")
 """Rooms of tests that look at what shaders draw."""
 
@@ -63,7 +66,8 @@ def select_tests(path: Path, line: int) -> list[list[str]]:
         recorded = {name.partition("::")[0] for name in read_record()[1]}
         tests, driving = ([test for test in some if test not in recorded] for some in (tests, driving))
     quick = [*tests, *(f"--deselect={name}" for name in listed if name.partition("::")[0] in tests)] if tests else []
-    return [words for words in (runners, quick, slow, driving) if words]
+    pages = [PAGES] if path.suffix == ".py" else []
+    return [words for words in (runners, quick, pages, slow, driving) if words]
 
 
 def choose_runners(path: Path, line: int, near: list[str]) -> list[str]:

@@ -115,15 +115,20 @@ def test_all_keys_or_those_here_are_chosen(context: Any) -> None:
     assert chosen(context) == {(GAIN, 1), (GAIN, 10), (GAIN, 20), (TINT, 1), (TINT, 10)}
     assert commands.describe_keys(context.curves.spots) == "5 keys"
     context.session.time.seek(10)
+    commands.choose_none(context)
     commands.choose_here(context)
     assert chosen(context) == {(GAIN, 10), (TINT, 10)}
     commands.swap_mode(context)
     context.curves.hidden = {(TINT, 1)}
     commands.choose_all(context)
     assert {channel for port, _, channel in context.curves.spots if port == TINT} == {0, 2, 3}
+    context.curves.chosen_rows = frozenset({TINT})
+    commands.choose_all(context)
+    assert chosen(context) == {(TINT, 1), (TINT, 10)}, "curves of chosen rows alone are drawn"
     commands.swap_mode(context)
     commands.choose_all(context)
     assert {channel for port, _, channel in context.curves.spots if port == TINT} == {0, 1, 2, 3}
+    assert {port for port, _ in chosen(context)} == {GAIN, TINT}, "the sheet shows all rows"
 
 
 @pytest.mark.parametrize("how", ["constant", "linear", "bezier"])
