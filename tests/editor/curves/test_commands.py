@@ -72,7 +72,7 @@ def test_copies_go_into_the_chosen_row(context: Any) -> None:
     assert frames(context) == [1, 10, 20]
     context.curves.chosen_rows = frozenset({STEPS})
     context.session.time.seek(3)
-    with pytest.raises(GraphError, match="gain.steps at frame 3: 2.0 does not fit"):
+    with pytest.raises(GraphError, match=r"gain\.steps at frame 3: 2\.0 does not fit"):
         commands.paste(context)
     context.session.apply(AnimateValues({SIGMA: None}, "No expression"))
     context.curves.chosen_rows = frozenset({SIGMA})
