@@ -29,3 +29,46 @@ def test_luminance_is_that_of_the_working_space(working, weights) -> None:
 def test_shaders_and_the_editor_have_the_same_weights() -> None:
     text = (shaders.folder() / "lib" / "working.glsl").read_text(encoding="utf-8")
     assert f"LUMINANCE_WEIGHTS = vec3({', '.join(map(str, REC709_LUMINANCE))})" in text
+
+
+def about(side: str = "A", **changes) -> list[str]:
+    """The words on a picture of 64x36 at half its size, of which nothing is computed."""
+    image = SimpleNamespace(full_size=(64, 36), kind=Kind.IMAGE, channels=4, pixel_aspect=1.0, scale=1.0)
+    for name in {*vars(image)} & {*changes}:
+        setattr(image, name, changes.pop(name))
+    preview = {"paused": False, "busy": False, "completing": False, "progress": (3, 9)}
+    preview |= {name: changes.pop(name) for name in {*preview} & {*changes}}
+    sight, compares = SimpleNamespace(zoom=changes.pop("zoom", 0.5)), changes.pop("compares", False)
+    context = SimpleNamespace(
+        palette=DARK, preview=SimpleNamespace(**preview), viewer=SimpleNamespace(compares=compares)
+    )
+    shown = None if changes.pop("empty", False) else image
+    return [word.text for word in infobar.about(context, side, shown, sight, changes.pop("seconds", 0.0))]
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({}, ["64\u00d736", "RGBA", "50 %"]),
+        ({"zoom": 1.0}, ["64\u00d736", "RGBA", "100 %"]),
+        ({"zoom": 0.1}, ["64\u00d736", "RGBA", "10 %"]),
+        ({"zoom": 0.0625}, ["64\u00d736", "RGBA", "6.2 %"]),
+        ({"pixel_aspect": 2.0}, ["64\u00d736", "RGBA", "pixel aspect 2", "50 %"]),
+        ({"scale": 0.25}, ["64\u00d736", "RGBA", "1/4", "50 %"]),
+        ({"kind": Kind.NUMBER, "channels": 1}, ["64\u00d736", "number"]),
+        ({"kind": Kind.VECTOR, "channels": 3}, ["64\u00d736", "vector 3", "50 %"]),
+        ({"kind": Kind.FIELD, "channels": 1}, ["64\u00d736", "field", "50 %"]),
+        ({"seconds": 0.0126}, ["64\u00d736", "RGBA", "50 %", "13 ms"]),
+        ({"seconds": 0.9994}, ["64\u00d736", "RGBA", "50 %", "999 ms"]),
+        ({"seconds": 1.0}, ["64\u00d736", "RGBA", "50 %", "1.0 s"]),
+        ({"paused": True, "busy": True, "seconds": 2.0}, ["64\u00d736", "RGBA", "50 %", "paused"]),
+        ({"busy": True, "seconds": 2.0}, ["64\u00d736", "RGBA", "50 %", "3/9"]),
+        ({"busy": True, "completing": True, "seconds": 2.0}, ["64\u00d736", "RGBA", "50 %", "2.0 s"]),
+        ({"compares": True}, ["A", "64\u00d736", "RGBA", "50 %"]),
+        ({"compares": True, "side": "B", "seconds": 2.0}, ["B", "64\u00d736", "RGBA"]),
+        ({"empty": True, "seconds": 2.0}, []),
+        ({"empty": True, "busy": True}, ["3/9"]),
+    ],
+)
+def test_what_is_shown_is_told(changes, words) -> None:
+    assert about(**changes) == words
