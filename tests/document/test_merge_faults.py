@@ -42,6 +42,7 @@ def test_a_link_that_fits_no_more() -> None:
     merge, ours = change(EMPTY, links=links), change(WHOLE, links=links)
     assert [*find_merge_faults(merge, ours, EMPTY)] == [("links", "soft.image")]
     assert not [*find_merge_faults(merge, merge, EMPTY)] and not [*find_merge_faults(ours, ours, WHOLE)]
+    assert not [*find_merge_faults(merge, merge, ours)], "on one side it was wrong before"
 
 
 def test_loops_are_faults_of_their_links() -> None:
