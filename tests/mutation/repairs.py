@@ -360,4 +360,11 @@ REPAIRS = (
         "elif entry.is_dir():",
         "tests/resources/test_folders.py::test_links_do_not_lead_in_circles",
     ),
+    Repair(
+        "curves of channels on a black panel",
+        "app/editor/curves/frame.py",
+        "if palette.is_dark",
+        'if palette.name == "dark"',
+        "tests/editor/curves/test_painting.py::test_curves_of_channels_have_the_color_of_their_channel",
+    ),
 )
