@@ -25,11 +25,11 @@ import pytest
 from _pytest.runner import runtestprotocol
 from children import MARK, end_process, list_marked
 
-LARGE = 750
+LARGE = 680
 """MiB of memory of a child above which another one runs the next file of tests. Half a gigabyte of it is what the
 worker has read."""
 
-MARGIN = 250
+MARGIN = 150
 """More MiB, above which another one runs the rest of a file, where it makes anew what the tests of the file share."""
 
 _RUNNER = pytest.StashKey["ChildRunner"]()

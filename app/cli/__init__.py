@@ -10,6 +10,7 @@ import sys
 from io import TextIOWrapper
 from typing import Literal, TextIO
 
+from ..resources.call_room import call_with_room
 from ..resources.machine import has_memory_limit
 from .signals import raise_on_requests
 
@@ -38,7 +39,7 @@ def main() -> None:
     try:
         from .program import run_process
 
-        code = run_process(sys.argv[1:])
+        code = call_with_room(run_process, sys.argv[1:])
     except KeyboardInterrupt:  # while modules are still being imported
         code = _INTERRUPTED
     os._exit(code)

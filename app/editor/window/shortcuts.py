@@ -30,20 +30,24 @@ def run_shortcuts(editor: Editor) -> None:
         editor.waiting_action = ""
         editor.code.flush()
         editor.actions.run(waiting)
-    if editor.dialogs.any or imgui.get_io().want_text_input or imgui.is_popup_open("", _ANY_POPUP):
+    if editor.dialogs.any or imgui.is_popup_open("", _ANY_POPUP):
         editor.timeline.tapped = False
-        if not editor.dialogs.any and not imgui.is_popup_open("", _ANY_POPUP):
-            _note_shortcut_in_text(editor)
-        return
+    elif imgui.get_io().want_text_input:
+        editor.timeline.tapped = False
+        _note_shortcut_in_text(editor)
+    else:
+        _run_pressed(editor)
+
+
+def _run_pressed(editor: Editor) -> None:
     if imgui.is_key_pressed(imgui.Key.space, False):
         editor.timeline.tapped = not imgui.get_io().key_mods
     for button in range(3):
         editor.timeline.tapped &= not imgui.is_mouse_down(button)
-    has_run = False
     for action, text in editor.actions.list_shortcuts(editor.scope):
-        if not has_run and _is_pressed(editor, text, action.repeats):
+        if _is_pressed(editor, text, action.repeats):
             editor.actions.run(action.id)
-            has_run = True
+            break
     for key in _TAKEN:
         imgui.internal.set_key_owner(key, _OURS)
 

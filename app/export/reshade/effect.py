@@ -104,10 +104,12 @@ class _EffectWriter(Struct, dict=True):
     def _write_values(self) -> tuple[list[str], dict[str, str]]:
         """The lines of what a user changes, and the expression of each knob."""
         document, ranges, heavy = self.package.document, self._find_ranges(), self._find_heavy_knobs()
+        light: list[Record] = []
         for control in document["controls"]:
-            if heavy & {knob["name"] for knob in control["knobs"]}:
+            if heavy.isdisjoint(knob["name"] for knob in control["knobs"]):
+                light.append(control)
+            else:
                 self.notes.append(f"control '{control['name']}' keeps its value: {_TOO_MANY}")
-        light = [item for item in document["controls"] if not heavy & {knob["name"] for knob in item["knobs"]}]
         lines, knobs = write_controls(light, ranges)
         first, last = document["frames"]
         if last > first and FRAME in heavy:
