@@ -97,3 +97,17 @@ def test_the_opposite_and_a_shape_of_no_size(run):
     for shape in ("rectangle", "ellipse", "polygon", "star", "line"):
         nothing = run(Shape(shape=shape, size=(0.0, 0.0)), size=(32, 24), output="mask")
         assert np.isfinite(nothing).all() and nothing.max() < 0.02
+
+
+def test_the_spline_of_a_new_shape_is_a_drop() -> None:
+    """The same left and right, from the top to the bottom of its box, with a corner at the top and round elsewhere."""
+    rows = np.array(Shape(shape="spline").spline).reshape(-1, 7)
+    places, before, after = rows[:, :2], rows[:, 2:4], rows[:, 4:6]
+    order = [0, 3, 2, 1]
+    np.testing.assert_allclose(places[order], places * (-1.0, 1.0) + (1.0, 0.0))
+    np.testing.assert_allclose(after[order], before * (-1.0, 1.0))
+    assert places.min(axis=0).tolist() == [0.0, 0.0] and places.max(axis=0).tolist() == [1.0, 1.0]
+    assert not rows[0, 2:].any() and places[0].tolist() == [0.5, 0.0]
+    np.testing.assert_allclose(before[1:], -after[1:])
+    assert (before[1:] @ (1.0, 1.0) != 0.0).all() and not rows[:, 6].any()
+    assert (places[1, 1] - 0.5) * 2.0 < np.hypot(*before[2]) + 0.1 and places[1, 1] + after[1, 1] < 1.0
