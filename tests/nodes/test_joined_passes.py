@@ -42,7 +42,8 @@ BLUR, WIDER = trace(PaintTool.BLUR, sigma=2.0), trace(PaintTool.BLUR, sigma=3.0)
         ((trace(),), BLUR, True), ((BLUR,), trace(), True), ((BLUR,), BLUR, True), ((BLUR,), WIDER, False),
         ((trace(), BLUR), WIDER, False), ((BLUR,), CLONE, True), ((trace(PaintTool.SMEAR),), trace(), False),
         ((trace(),), trace(PaintTool.SMEAR), False), ((trace(),), trace(read=NEAR), False),
-        ((trace(),), trace(read=FAR), True), ((trace(box=FAR), trace()), trace(read=FAR), False), ((trace(read=FAR),), trace(), True),
+        ((trace(),), trace(read=FAR), True), ((trace(box=FAR), trace()), trace(read=FAR), False),
+        ((trace(read=FAR),), trace(), True),
     ],
 )  # fmt: skip
 def test_strokes_share_a_pass_that_copy_the_same_and_read_nothing_of_each_other(
