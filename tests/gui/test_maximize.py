@@ -7,6 +7,7 @@ from halation import presets
 from halation.authoring.commands import AddNode
 from halation.editor.shared.window_commands import PanelTitle
 from halation.editor.toolkit.keys import chord
+from imgui_bundle import imgui
 
 BLOOM = next(path for path in presets.paths() if path.stem == "soft_bloom")
 
@@ -26,6 +27,7 @@ def test_the_panel_under_the_pointer_fills_the_window(gui, title: str, place: tu
         ui.wait(6)
         left, top, right, bottom = ui.editor.places[title]
         assert right - left > 1390 > narrow and bottom - top > 700
+        assert not imgui.get_current_context().nav_cursor_visible, "nobody has chosen anything in it by the keyboard"
         ui.keys("Ctrl+Space")
         ui.wait(6)
         assert width_of(ui, title) == narrow and not ui.editor.timeline.playback.playing

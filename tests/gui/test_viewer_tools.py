@@ -16,6 +16,7 @@ from halation.editor.viewer.geometry import Sight
 from halation.graph import Graph, Output, Port, Settings
 from halation.nodes import Light, LightKind, catalogue, lights_of, number_lights
 from halation.resources.sandbox import UNRESTRICTED
+from imgui_bundle import imgui
 
 
 def test_a_region_is_drawn_resized_and_cleared(gui) -> None:
@@ -82,9 +83,11 @@ def test_the_table_measures_rectangles_and_markers(gui) -> None:
     def body(ui) -> None:
         ui.settled()
         viewer = ui.editor.viewer
+        (across, down), line = viewer.panel, imgui.get_text_line_height()
         ui.click(inside(ui, 0.3, 0.3), keys="Ctrl")
         assert viewer.table and viewer.markers[0] == pytest.approx((0.3, 0.3), abs=0.01)
         ui.settled()
+        assert viewer.panel[0] == across and viewer.panel[1] < down - 5 * line, "the picture makes room for it"
         ui.drag(inside(ui, 0.2, 0.2), inside(ui, 0.4, 0.6), keys="Ctrl")
         ui.settled()
         assert viewer.measured == pytest.approx((0.2, 0.2, 0.4, 0.6), abs=0.02)
