@@ -176,6 +176,9 @@ def test_lengths_and_depths_are_limited() -> None:
         assert Expression(text).fault is not None, text
     deep = "(" * (MAX_DEPTH - 2) + "glow" + ")" * (MAX_DEPTH - 2)
     assert at(deep) == 2.0
+    for word in ("1", "pi", "frame", "glow", "`s`"):  # each is one level
+        for count, is_fine in ((MAX_DEPTH - 1, True), (MAX_DEPTH, False)):
+            assert (Expression("-" * count + word).fault is None) is is_fine
     nest = "1 or x and 1 < 1 + 2 * -("
     count = MAX_DEPTH // 7
     assert Expression(nest * count + "1" + ")" * count).fault is None

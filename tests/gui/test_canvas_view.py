@@ -8,6 +8,7 @@ from halation.authoring.commands import SetValue
 from halation.authoring.edits.element_id import ElementId
 from halation.editor.canvas.brush import READABLE
 from halation.graph import Port
+from imgui_bundle import imgui
 
 
 def test_the_minimap_is_there_only_while_something_is_out_of_view(gui) -> None:
@@ -23,6 +24,8 @@ def test_the_minimap_is_there_only_while_something_is_out_of_view(gui) -> None:
         ui.editor.canvas.fit()
         ui.wait(4)
         assert "minimap" not in ui.editor.places
+        ui.click("legend")
+        assert imgui.is_popup_open("", int(imgui.PopupFlags_.any_popup)), "the question mark says what colors mean"
 
     gui(body, size=(1400, 900))
 
