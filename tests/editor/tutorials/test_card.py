@@ -12,14 +12,15 @@ AREA, SIZE, WIDGET = (0.0, 0.0, 1000.0, 800.0), (320.0, 120.0), (400.0, 300.0, 5
 """The card is 14 away from its widget and at least 10 from the border."""
 
 PLACES = (
-    ((400.0, 354.0), (690.0, 460.0)),  # below, where the widget begins
-    ((400.0, 166.0), (690.0, 170.0)),  # above
-    ((180.0, 354.0), (190.0, 460.0)),  # below, where the widget ends
-    ((180.0, 166.0), (190.0, 170.0)),  # above
-    ((514.0, 300.0), (820.0, 310.0)),  # at the right
-    ((66.0, 300.0), (70.0, 310.0)),  # at the left
+    ((400.0, 354.0), (690.0, 460.0)),
+    ((400.0, 166.0), (690.0, 170.0)),
+    ((180.0, 354.0), (190.0, 460.0)),
+    ((180.0, 166.0), (190.0, 170.0)),
+    ((514.0, 300.0), (820.0, 310.0)),
+    ((66.0, 300.0), (70.0, 310.0)),
 )
-"""Places in the order in which they are tried, and a corner of each that no other one of them covers."""
+"""Below and above, from where the widget begins and up to where it ends, then right and left: the order in which places
+are tried, with a corner of each that no other one of them covers."""
 
 
 def make_note(at: tuple[float, float]) -> Rect:
