@@ -21,6 +21,7 @@ from ..edits.ends import without_samples
 from ..state.open_document import OpenDocument
 from .absent_layers import list_absent_outputs
 from .command import EditCommand, Edited
+from .metals import connect_metals
 
 ABOVE = 380.0
 """Canvas units between a render's node and a matte node above it: the height of a `read_render` with all outputs."""
@@ -85,6 +86,7 @@ class AppendNode(EditCommand[str], frozen=True):
         selected = sorted(document.selection, key=lambda element: (element != document.active, element))
         absent = list_absent_outputs(document, surface_layers.list_behind(document.graph, selected))
         graph = appending.append_node(edited.graph, edited.outcome, selected, self.sizes, absent)
+        graph = connect_metals(document, graph, edited.outcome, self.sizes)
         follows = _list_followed(graph, edited.outcome)
         return Edited(edited.label, edited.outcome, graph, (ElementId(edited.outcome),), follows=follows)
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from itertools import combinations
 from pathlib import Path
 
+import numpy as np
+import OpenImageIO as oiio
 import pytest
 from halation import presets
 from halation.authoring.commands import (
@@ -23,6 +25,7 @@ from halation.editor.canvas.layout import NodeFacts, make_node_layout
 from halation.graph import Graph, Input, Output, Port
 from halation.nodes import Kind
 from halation.render_layers.render import read_render
+from halation.renderer import Renderer, RenderRequest
 from halation.resources.sandbox import UNRESTRICTED
 
 NEON = presets.paths()[0].parent / "samples" / "neon.exr"
@@ -228,3 +231,73 @@ def test_inputs_of_the_graph_are_layers_too(session: Session) -> None:
     session.select(ElementId("bloom"))
     # a matte is somebody's choice, no fact of the render
     assert "matte" not in feeders_of(session, append(session, "set_matte"))
+
+
+GOLD = {
+    "Combined": (0.4, 0.3, 0.1, 1.0),
+    "Diffuse Color": (0.0, 0.0, 0.0),
+    "Glossy Color": (1.0, 0.7643, 0.3339),
+    "Normal": (0.0, 0.0, 1.0),
+    "Depth": (4.0,),
+}
+"""What Cycles 5.0.1 writes of gold."""
+
+
+def write_gold(folder: Path, leave_out: str = "") -> Path:
+    """A render of nothing but gold."""
+    layers = {name: color for name, color in GOLD.items() if name != leave_out}
+    letters = {4: "RGBA", 3: "RGB", 1: "Z"}
+    names = [
+        f"ViewLayer.{name}.{letter}"
+        for name, color in layers.items()
+        for letter in ("XYZ" if name == "Normal" else letters[len(color)])
+    ]
+    spec = oiio.ImageSpec(16, 9, len(names), "float")
+    spec.channelnames = tuple(names)
+    spec.attribute("Software", "Blender 5.0.1")
+    path = folder / f"gold_{leave_out or 'all'}.exr"
+    file = oiio.ImageOutput.create(str(path))
+    assert file is not None and file.open(str(path), spec), oiio.geterror()
+    pixels = np.float32([number for color in layers.values() for number in color])
+    file.write_image(np.broadcast_to(pixels, (9, 16, len(names))).copy())
+    file.close()
+    return path
+
+
+def test_relit_gold_of_blender_is_gold(session: Session, tmp_path: Path, renderer: Renderer) -> None:
+    """Its diffuse color is black: the glossy color, which the render has beside it, comes along.
+
+    The render tells no camera, so none is linked.
+    """
+    session.files.open_pictures([write_gold(tmp_path)])
+    (render,) = session.graph.nodes
+    relight = append(session, "deferred_lighting")
+    fed = feeders_of(session, relight)
+    assert fed["normal"] == f"{render}.normal" and "camera" not in fed
+    assert (fed["albedo"], fed["material"]) == ("material_from_colors.albedo", "material_from_colors.material")
+    assert feeders_of(session, "material_from_colors") == {
+        "diffuse_color": f"{render}.albedo",
+        "glossy_color": "glossy_color.out",
+    }
+    assert session.selection == {ElementId(relight)} and not find_overlaps(session.graph)
+    lit = renderer.render(session.graph, RenderRequest(targets={"lit": Port(relight, "out")}))["lit"]
+    red, green, blue = lit[4, 8, :3]
+    assert red > 0.1 and 0.6 * red < green < 0.85 * red and 0.25 * red < blue < 0.45 * red
+    session.undo()
+    assert list(session.graph.nodes) == [render]
+
+
+def test_a_second_light_shares_the_material(session: Session, tmp_path: Path) -> None:
+    session.files.open_pictures([write_gold(tmp_path)])
+    (render,) = session.graph.nodes
+    append(session, "deferred_lighting")
+    session.select([ElementId(render)])
+    other = append(session, "deferred_lighting")
+    assert feeders_of(session, other)["material"] == "material_from_colors.material"
+    assert len(session.graph.nodes) == 5 and not find_overlaps(session.graph)
+
+
+def test_no_metal_is_looked_for_where_no_layer_tells_it(session: Session, tmp_path: Path) -> None:
+    session.files.open_pictures([write_gold(tmp_path, "Glossy Color")])
+    relight = append(session, "deferred_lighting")
+    assert len(session.graph.nodes) == 2 and "material" not in feeders_of(session, relight)
