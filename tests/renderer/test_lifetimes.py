@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import os
 import threading
 import time
 from itertools import zip_longest
@@ -17,6 +19,7 @@ from halation.nodes.color.exposure import Exposure
 from halation.nodes.color.saturation import Saturation
 from halation.renderer import Renderer, RenderRequest, open_device
 from halation.renderer.execution.decoding import MAX_LOOKAHEAD
+from halation.resources.machine import resident_memory
 from halation.resources.sandbox import UNRESTRICTED
 
 PICTURE = np.random.default_rng(5).random((23, 37, 4), np.float32)
@@ -177,6 +180,17 @@ def test_two_devices_may_take_turns(renderer):
         np.testing.assert_allclose(engine.runner.download(plan)["image"], expected, rtol=1e-6, atol=1e-6)
         engine.close()
         engine.device.close()
+
+
+def test_a_device_ends_with_the_last_reference_to_it():
+    """Six devices with a texture of 64 MiB each."""
+    sizes = []
+    for _ in range(6):
+        texture = open_device(sandbox=UNRESTRICTED).create_texture((2048, 2048), 4, "f4")
+        sizes.append(resident_memory(os.getpid()))
+        del texture
+        gc.collect()
+    assert sizes[-1] < sizes[0] + 2 * 64 * 2**20
 
 
 def test_every_thread_needs_a_device_of_its_own(renderer, engine):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import weakref
 from collections.abc import Callable
 
 import moderngl
@@ -15,10 +16,14 @@ from .warming import EGL_LIBRARY, GL, wait_for_driver
 
 
 def open_standalone(driver: DriverSettings) -> OpenGLDevice:
-    """A device without a window. Raises DeviceError where OpenGL cannot be opened, or is too old."""
+    """A device without a window. Raises DeviceError where OpenGL cannot be opened, or is too old.
+
+    It ends with the last reference to it, or is closed before: moderngl ends no context by itself.
+    """
     wait_for_driver()
     with driver.apply():
         context = _create_context()
+        weakref.finalize(context, context.mglo.release).atexit = False
         return OpenGLDevice(context, describe_target(context))
 
 
