@@ -161,3 +161,18 @@ def test_a_rectangle_over_what_it_left() -> None:
     assert find_grip(gizmo, "nw") == (0.0, 0.0) and find_grip(gizmo, "se") == SIZE
     assert gizmo.drag("se", (160.0, 90.0), FREE).values[ports[1]] == (0.5, 0.5)
     assert gizmo.drag("nw", (-80.0, -45.0), FREE).values[ports[0]] == (0.125, 0.125)
+
+
+@pytest.mark.parametrize(
+    ("rotation", "move", "turn"),
+    [
+        (0.0, (190.0, 90.0), (160.0, -30.0)),
+        (90.0, (160.0, 120.0), (280.0, 90.0)),
+        (180.0, (130.0, 90.0), (160.0, 210.0)),
+    ],
+)
+def test_grips_lie_an_arm_beside_the_middle_and_above_the_edge(rotation: float, move: Point, turn: Point) -> None:
+    gizmo = make_transform(rotation=rotation)
+    assert find_grip(gizmo, "move") == pytest.approx(move) and find_grip(gizmo, "turn") == pytest.approx(turn)
+    small = make_transform(rotation=rotation, scale=(0.25, 0.5))
+    assert math.dist(find_grip(small, "move"), (160.0, 90.0)) == pytest.approx(30.0), "its arm is as long on the screen"
