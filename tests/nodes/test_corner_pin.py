@@ -5,6 +5,7 @@ from __future__ import annotations
 import cv2
 import numpy as np
 import pytest
+from halation.nodes.distort import corner_pin
 from halation.nodes.distort.corner_pin import CornerPin
 from warps import waves
 
@@ -67,3 +68,17 @@ def test_the_opposite_undoes_it(run):
 def test_corners_on_one_line_show_nothing_wrong(run):
     node = CornerPin(top_left=(0.1, 0.1), top_right=(0.5, 0.5), bottom_right=(0.9, 0.9), bottom_left=(0.3, 0.3))
     assert np.isfinite(run(node, {"image": waves(WIDTH, HEIGHT)})).all()
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_matrix_of_a_quadrangle_is_that_of_opencv(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    square = np.float32([(0, 0), (1, 0), (1, 1), (0, 1)])
+    corners = square + rng.uniform(-0.3, 0.3, (4, 2)).astype(np.float32)
+    found = corner_pin._map_square(tuple(tuple(map(float, corner)) for corner in corners))  # pyright: ignore
+    np.testing.assert_allclose(np.reshape(found, (3, 3)), cv2.getPerspectiveTransform(square, corners), atol=1e-5)
+
+
+@pytest.mark.parametrize("corners", [((0.0, 0.0),) * 4, ((0.0, 0.0), (0.2, 0.1), (0.4, 0.2), (0.6, 0.3))])
+def test_corners_on_a_line_have_no_matrix(corners) -> None:
+    assert corner_pin._map_square(corners) == (0.0,) * 9  # pyright: ignore[reportPrivateUsage]
