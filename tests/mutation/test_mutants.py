@@ -5,11 +5,12 @@ from __future__ import annotations
 import ast
 import json
 import subprocess
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from import_graph import ROOT
-from mutation import run
+from mutation import reach, run
 from mutation.choice import FUNCTIONS, list_scripted_nodes, list_tests, select_tests
 from mutation.mutants import Mutant, list_mutants
 from mutation.repairs import REPAIRS
@@ -31,6 +32,15 @@ GLSL = """// a + b
 layout(location = 0) out vec4 color;
 float f(float x) { return max(x - 0.5, 0.0) * 3.0; } /* 1.0 */
 """
+
+
+@pytest.fixture(autouse=True)
+def nothing_recorded(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
+    """Tests are chosen by names and imports, whatever was recorded here."""
+    monkeypatch.setattr(reach, "RECORD", tmp_path / "none.npz")
+    reach.read_record.cache_clear()
+    yield
+    reach.read_record.cache_clear()
 
 
 def change(path: str, source: str) -> list[tuple[str, str]]:
