@@ -54,6 +54,9 @@ class DrawnShapes:
     def add_ngon_filled(self, at: Any, radius: float, color: int, count: int) -> None:
         self._add("ngon", (at,), (radius,), color, str(count))
 
+    def add_ngon(self, at: Any, radius: float, color: int, count: int, width: float = 1.0) -> None:
+        self._add("outlined ngon", (at,), (radius, width), color, str(count))
+
     def add_ellipse(
         self, at: Any, radii: Any, color: int, turn: float = 0.0, segments: int = 0, width: float = 1.0
     ) -> None:
