@@ -92,6 +92,19 @@ def test_a_click_at_the_right_sets_a_key_or_removes_it(column: Column) -> None:
     assert len(column.session.history.steps) == steps and column.state.chosen_rows == {SIGMA}, "an expression has none"
 
 
+def test_places_to_click_grow_with_the_interface(monkeypatch: pytest.MonkeyPatch) -> None:
+    column = Column(monkeypatch, 2.0)
+    column.session.time.seek(5)
+    column.click("gain", LEFT + 43.0)
+    assert column.state.folded == {"gain"}
+    column.click("gain", LEFT + 45.0)
+    assert column.state.folded == {"gain"} and column.state.chosen_rows
+    column.click(GAIN, RIGHT - 39.0)
+    assert [key.frame for key in column.session.graph.animation[GAIN].keys] == [1, 5, 9]
+    column.click(GAIN, RIGHT - 41.0)
+    assert [key.frame for key in column.session.graph.animation[GAIN].keys] == [1, 5, 9]
+
+
 def test_letters_hide_their_channel(column: Column) -> None:
     """Four letters of 15 pixels end 24 before the right border, so they begin at 216."""
     for place in range(4):
