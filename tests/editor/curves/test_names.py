@@ -179,3 +179,42 @@ def test_letters_and_diamonds_are_where_they_are_clicked(monkeypatch: pytest.Mon
     assert column.shapes.shapes[1].kind != "outlined ngon", "a key is filled"
     column.column._draw_diamond(column.frame, column.find_row(SIGMA), 60.0, False)
     assert column.shapes.shapes[-1].text == "=" and f"keys diamond {SIGMA}" not in places
+
+
+@pytest.mark.parametrize("scale", [1.0, 2.0])
+def test_rows_have_their_parts_from_left_to_right(monkeypatch: pytest.MonkeyPatch, scale: float) -> None:
+    column = Column(monkeypatch, scale)
+    column.frame.row_height = 22.0 * scale
+    for name, part in (("push_font", lambda font, size: None), ("pop_font", lambda: None),
+                       ("get_style", lambda: SimpleNamespace(font_scale_main=scale))):  # fmt: skip
+        setattr(names.imgui, name, part)
+    monkeypatch.setattr(names, "cut_end", lambda text, room: f"{text}|{room:.0f}")
+    places, middle = column.frame.context.places, 100.0 + 11.0 * scale
+
+    def draw(port: Port | str, *, hot: bool = False) -> list[Any]:
+        column.shapes.shapes.clear()
+        row = column.find_row(port)
+        column.column._draw_row(column.frame, row, 100.0, column.rows.index(row), hot)
+        return [*column.shapes.shapes]
+
+    ground, arrow, label = draw("gain")
+    assert places["keys row gain"] == (LEFT, 100.0, RIGHT, 100.0 + 22.0 * scale)
+    assert ground.kind == "filled rect" and ground.points == ((LEFT, 100.0), (RIGHT, 100.0 + 22.0 * scale))
+    assert arrow.points[0][0] == LEFT + 10.0 * scale and label.points[0][0] == LEFT + 24.0 * scale
+    assert label.text == f"gain|{200.0 - 30.0 * scale:.0f}" and label.color == u32(DARK.text)
+    column.state.folded = {"gain"}
+    assert draw("gain")[1].text != arrow.text
+    grounds = [shape.color for shape in (draw("gain")[0], draw(GAIN, hot=True)[0])]
+    column.state.chosen_rows = frozenset({GAIN})
+    grounds += [draw(GAIN)[0].color, draw(GAIN, hot=True)[0].color]
+    assert grounds[2] == grounds[3] == u32(DARK.accent, 0.16) and len({*grounds}) == 3
+    column.state.chosen_rows = frozenset()
+    dot, value, label, *_ = draw(GAIN)
+    assert dot.kind == "disk" and dot.points == ((LEFT + 18.0 * scale, middle),)
+    assert value.text == "0.25" and label.text.startswith("gain|") and label.points[0][0] == LEFT + 28.0 * scale
+    above = sum(row.port is not None for row in column.rows[: column.rows.index(column.find_row(GAIN))])
+    assert dot.color == u32(frames.color_of(column.frame.context, column.find_row(GAIN), 0, above))
+    letters = [shape.text for shape in draw(TINT)]
+    assert letters[:4] == [*"rgba"] and letters[4] == f"tint|{max(200.0 - (84.0 + 28.0 + 6.0) * scale, 0.0):.0f}"
+    column.frame.is_sheet = True
+    assert "r" not in [shape.text for shape in draw(TINT)] and draw(GAIN)[0].kind == "text", "the sheet has values"
