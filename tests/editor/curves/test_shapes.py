@@ -14,7 +14,7 @@ from halation.editor.curves.shapes import (
     make_outside_pieces,
     make_pieces,
 )
-from halation.editor.toolkit.plane import Plane, View, ticks
+from halation.editor.toolkit.plane import Plane, View, step, ticks
 from halation.graph import Expression, Graph, Key, Keys, Port, Settings
 from toy_nodes import Gain
 
@@ -124,3 +124,19 @@ def test_zooming_keeps_the_place_under_the_pointer() -> None:
         assert far.last > far.first and far.high > far.low
     assert view.fit((5.0, 5.0), (2.0, 2.0)) == View(4.0, 6.0, 1.0, 3.0)
     assert view.fit(None, None) == view
+
+
+@pytest.mark.parametrize(
+    ("scale", "apart", "whole", "expected"),
+    [(1.0, 50.0, False, 50.0), (1.0, 51.0, False, 100.0), (1.0, 20.0, False, 20.0), (10.0, 50.0, False, 5.0),
+     (300.0, 60.0, False, 0.2), (300.0, 60.0, True, 1.0), (1000.0, 50.0, False, 0.05), (0.5, 60.0, True, 200.0)],
+)  # fmt: skip
+def test_steps_are_the_least_round_ones_with_room(scale: float, apart: float, whole: bool, expected: float) -> None:
+    assert step(scale, apart, whole) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(("scale", "between"), [(1.0, 10.0), (2.0, 10.0), (10.0, 1.0), (100.0, 0.1), (0.5, 20.0)])
+def test_small_ticks_divide_a_step_by_two_or_five(scale: float, between: float) -> None:
+    """Steps of 50 pixels or more are 50, 50, 5, 0.5 and 100: twos are halved, others have five parts."""
+    marks = [tick.at for tick in ticks(0.0, 400.0 / scale, scale, 50.0)]
+    assert {round(b - a, 9) for a, b in itertools.pairwise(marks)} == {between}
