@@ -16,6 +16,7 @@ from .._declare import (
     Slider,
     Vector,
 )
+from ._coverage import COVERAGE_AROUND, COVERAGE_REACH
 from ._march import surfaces
 
 _RAYS = {"preview": 1, "quality": 4, "reference": 32}
@@ -113,5 +114,26 @@ class ContactShadows(Filter):
                 rows=rows,
                 rays=rays,
             )
+        if draw.is_linked(self.normal):
+            shadow = self._share(draw, shadow, rays, sun if self.light == "sun" else self.position)
         out = draw.point("contact_shadows", self.image, shadow=shadow, color=self.color)
         return {"out": out, "shadow": shadow}
+
+    def _share(self, draw: Draw, open: Drawn, rays: tuple[float, ...], to: tuple[float, ...]) -> Drawn:
+        """The shadow where several surfaces share a pixel: there, rays start at one of them, whose normal is unknown."""
+        near = draw.point("contact_shadows_near", self.depth, result=Field())
+        coverage = draw(
+            "contact_shadows_coverage", self.normal, near=near, overlap=COVERAGE_AROUND, result=Vector(width=3)
+        )
+        return draw(
+            "contact_shadows_shared",
+            self.normal,
+            near=near,
+            coverage=coverage,
+            open=open,
+            overlap={"normal": COVERAGE_AROUND, "near": COVERAGE_AROUND, "open": COVERAGE_REACH, "coverage": 0},
+            result=Field(),
+            rays=rays,
+            light=self.light,
+            to=to,
+        )

@@ -1,3 +1,4 @@
+#include "lib/coverage.glsl"
 #include "lib/pi.glsl"
 #include "lib/shadow.glsl"
 #include "lib/solid.glsl"
@@ -50,6 +51,25 @@ float contact_shadows_denoise(const vec4 rows[3], const vec4 rays[3]) {
             total += weight;
         }
     return finite(sum / total);
+}
+
+float contact_shadows_near(float depth) { return nearness(depth); }
+vec3 contact_shadows_coverage() { return coverage_found(); }
+
+// The part of the light of a pixel that its surfaces see together: each as it is beside the edge, by how much of the
+// pixel it covers and by the cosine of its angle to the light. A surface that faces away has no part in it.
+float contact_shadows_shared(const vec4 rays[3], int light, vec3 to) {
+    float open = open_at(pixel);
+    Coverage shares = coverage_of(coverage_at(pixel));
+    for (int rounds = coverage_is_mixed(shares) ? 1 : 0; rounds > 0; --rounds) {
+        if (light == LIGHT_LAMP) to = normalize(to - camera_place(rays, camera_uv(pixel, extent), 1.0 / near_at(pixel)));
+        vec3 front, back;
+        coverage_normals(shares, front, back);
+        vec2 lit = vec2(shares.front_share, 1.0 - shares.front_share) * max(vec2(dot(front, to), dot(back, to)), 0.0);
+        if (lit.x + lit.y > 0.0)
+            open = (lit.x * open_at(shares.front) + lit.y * open_at(shares.back)) / (lit.x + lit.y);
+    }
+    return finite(open);
 }
 
 vec4 contact_shadows(vec4 image, float shadow, vec4 color) {

@@ -131,3 +131,29 @@ def test_soft_shadows_hide_the_period_of_their_noise(run, turned):
     assert half.sum() > 5
     # Few neighbors differ: by the rank of a direction within its sixteenth, which is blue noise.
     assert (np.diff(lines[half], axis=1) == 0.0).mean() > 0.6
+
+
+def meet_corner(eye, way):
+    """The distance to the nearer of two walls that meet upright, and its normal; the right one leans a little."""
+    normals, places = np.array([(0.0, -1.0, 0.0), (-0.997, 0.0, 0.077)]), np.array([-4.0, -1.5])
+    away = ((places - normals @ eye) / (way @ normals.T)).astype(float)
+    away = np.where(away > 0.0, away, np.inf)
+    return away.min(-1), normals[away.argmin(-1)]
+
+
+@pytest.mark.parametrize("softness", [0.0, 2.0])
+@pytest.mark.parametrize("light", ["sun", "lamp"])
+def test_a_corner_in_shadow_has_no_bright_line(run, light, softness):
+    """Where a wall in shadow meets the one that hides the light, a pixel has some of both: no part of it is lit."""
+    width, height, parts, eye = 96, 54, 8, np.array((0.0, 0.0, 1.0))
+    camera, sun = look_at(tuple(eye), (0.9, 4.0, 1.1), (1.2, 1.2 * width / height)), np.array([0.62, -0.35, 0.4])
+    depth, _ = meet_corner(eye, rays(camera, width, height))
+    _, fine = meet_corner(eye, rays(camera, parts * width, parts * height))
+    normal = fine.reshape(height, parts, width, parts, 3).mean((1, 3))
+    corner = np.linalg.norm(normal, axis=-1) < 0.99
+    corner[: height // 6] = False  # from there, rays leave the picture before they are behind the wall
+    assert corner.sum() > 40
+    lamp = np.array([1.5, 4.0, 1.0]) + 3.0 * sun
+    values = {"light": light, "direction": tuple(sun), "position": tuple(lamp), "softness": softness, "length": 6.0}
+    found = shaded(run, camera, depth, normal, **values)
+    assert found[corner].max() < 0.05
