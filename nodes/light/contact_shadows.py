@@ -120,7 +120,7 @@ class ContactShadows(Filter):
         return {"out": out, "shadow": shadow}
 
     def _share(self, draw: Draw, open: Drawn, rays: tuple[float, ...], to: tuple[float, ...]) -> Drawn:
-        """The shadow where several surfaces share a pixel: there, rays start at one of them, whose normal is unknown."""
+        """The shadow where several surfaces share a pixel: rays start at one of them there, with its normal unknown."""
         near = draw.point("contact_shadows_near", self.depth, result=Field())
         coverage = draw(
             "contact_shadows_coverage", self.normal, near=near, overlap=COVERAGE_AROUND, result=Vector(width=3)
