@@ -76,6 +76,32 @@ def test_black_that_gives_light_is_metal_of_its_hue(run):
     np.testing.assert_allclose(material[0], np.stack([metal, 0.6 - 0.2 * metal], -1), atol=1e-5)
 
 
+def test_an_edge_of_metal_is_as_much_metal_as_it_covers(run):
+    """The mean of gold and of a wall, from one side to the other, upright and across."""
+    cover, gold, wall = np.array([0.05, 0.2, 0.4, 0.6, 0.8]), np.array([0.5, 0.38, 0.17]), np.array([0.7, 0.5, 0.3])
+    shares = np.repeat(np.array([[1.0, 1.0, 0.0, 0.0, 0.0]]), len(cover), 0)
+    shares[:, 2] = cover
+    shares = shares[..., None]
+    one = np.ones_like(shares)
+    diffuse = np.concatenate([(1.0 - shares) * wall, one], -1)
+    beauty = np.concatenate([shares * gold + (1.0 - shares) * 0.4 * wall, one], -1)
+    expected = shares * 0.7 * gold / (gold @ LUMINANCE) + (1.0 - shares) * wall
+    for turn in (lambda rows: rows[:1], lambda rows: rows[:1].transpose(1, 0, 2)):
+        for row in range(len(cover)):
+            layers = [turn(layer[row : row + 1]) for layer in (diffuse, beauty, np.zeros_like(diffuse))]
+            albedo, material = find_by_light(run, *layers)
+            np.testing.assert_allclose(albedo[..., :3], turn(expected[row : row + 1]), atol=2e-5)
+            np.testing.assert_allclose(material[..., :1], turn(shares[row : row + 1]), atol=2e-5)
+
+
+def test_a_dark_surface_of_another_hue_beside_metal_is_no_edge_of_it(run):
+    colors = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.1, 0.35, 0.08), (0.7, 0.5, 0.3), (0.7, 0.5, 0.3))
+    beauty, nothing = opaque(*[(0.4, 0.4, 0.4)] * 5), opaque(*[(0.0, 0.0, 0.0)] * 5)
+    albedo, material = find_by_light(run, opaque(*colors), beauty, nothing)
+    np.testing.assert_allclose(albedo[0, 2, :3], colors[2], atol=1e-5)
+    assert material[0, 2, 0] == pytest.approx(0.0, abs=1e-5)
+
+
 def test_a_rim_is_no_metal_because_little_of_it_is_there(run):
     """Light of a transparent film is premultiplied, and the alpha of the render is that of the surface."""
     leaf, light, alpha = np.array([0.1, 0.35, 0.08]), np.array([0.2, 0.4, 0.1]), np.array([0.05, 0.3, 1.0])[:, None]

@@ -89,6 +89,25 @@ def material_from_light(matte: Array, light: Array, emitted: Array, reflectance:
     return mix(matte, color, metal), metal
 
 
+def material_of_edges(matte: Array, color: Array, metal: Array) -> tuple[Array, Array]:
+    """The same where a renderer has filtered the edge of a metal: its diffuse color is that of the surface on the other
+    side, made darker by as much as the metal covers.
+    """
+    found, share = color, metal
+    least = np.full_like(metal, 0.1)
+    for far in (1, 2):
+        for x, y in ((1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)):
+            shining, sure = (shift_picture(data, x * far, y * far) for data in (color, metal))
+            plain, other = (shift_picture(data, -x * far, -y * far) for data in (color, metal))
+            size = np.maximum((plain * plain).sum(axis=-1, keepdims=True), 1e-20)
+            part = (matte * plain).sum(axis=-1, keepdims=True) / size
+            misfit = length(matte - part * plain) / np.sqrt(size)
+            fits = (share < 0.9) & (sure >= 0.9) & (other <= 0.1) & (part < 1.0) & (misfit < least)
+            least = np.where(fits, misfit, least)
+            found, share = np.where(fits, matte + (1.0 - part) * shining, found), np.where(fits, 1.0 - part, share)
+    return found, share
+
+
 def material_from_colors(
     diffuse_color: Array,
     glossy_color: Array,
@@ -108,7 +127,7 @@ def material_from_colors(
         light, _ = straight(beauty)
         matte, alpha = straight(join(diffuse_color[..., :3], np.clip(beauty[..., 3:], 0.0, 1.0)))
         emitted, _ = straight(join(emission[..., :3], beauty[..., 3:]))
-        albedo, metal = material_from_light(matte, light, emitted, reflectance)
+        albedo, metal = material_of_edges(matte, *material_from_light(matte, light, emitted, reflectance))
     rough = np.clip(roughness + roughen - metal * polish, 0.0, 1.0)
     return premultiply_color(albedo, alpha), np.concatenate([metal, rough], axis=-1)
 
