@@ -32,6 +32,9 @@ _OCTAVES = 4
 _FAINTEST = 1e-12
 """No level counts for less, so that levels that all count for nothing are all alike instead."""
 
+_SHARPNESS = 1.5
+"""By how many square pixels the variance of a level of the pyramid is less than 1.5 times the square of its pixels."""
+
 _LEVEL_REACH = 7
 """How far light reaches, in pixels of the smallest level: less than 3 on the way down and 4 on the way up, where each
 level reads 3 pixels of the finer one and 2 of the coarser one."""
@@ -94,6 +97,13 @@ class Bloom(Filter):
             "Reduce the weight of single bright pixels, which would flicker (Karis 2013). Some of their light is lost."
         ),
     ] = False
+    exact: Annotated[
+        bool,
+        Doc(
+            "Blur the narrowest parts of the glow as well, which are sharp without it. Then the glow has the same "
+            "shape at every size of the picture, and takes a little longer."
+        ),
+    ] = False
     edge: Annotated[
         Literal["clamp", "reflect", "wrap", "panorama"],
         Doc("What lies outside the picture. Wrap and panorama leave no seam in pictures that go on."),
@@ -106,11 +116,35 @@ class Bloom(Filter):
         light: Pixels = self.image
         if self.threshold > 0.0 or self.limit < _NO_LIMIT:
             light = draw.point("bloom_light", self.image, threshold=self.threshold, knee=self.knee, limit=self.limit)
-        glow = self._spread(draw, light, draw.size, self._shares(), self.edge)
+        glow = self._spread_exactly(draw, light) if self.exact else self._spread_levels(draw, light)
         if self.tint != _WHITE:
             glow = draw.point("bloom_tint", glow=glow, tint=self.tint)
         out = draw.point("bloom", self.image, glow=glow, intensity=self.intensity, mode=self.mode)
         return {"out": out, "glow": glow}
+
+    def _spread_levels(self, draw: Draw, light: Pixels) -> Drawn:
+        """The glow of the pyramid alone. What would lie on levels finer than the picture stays on its finest one."""
+        fine, amounts = self._find_amounts(self.radius)
+        amounts[0] += sum(amount for amount, _ in fine)
+        return self._spread(draw, light, draw.size, _find_shares(amounts), self.edge)
+
+    def _spread_exactly(self, draw: Draw, light: Pixels) -> Drawn:
+        """A glow whose levels are all as wide as their octaves: level l has a variance of 1.5 * 4^l square pixels.
+
+        The pyramid leaves 1.5 square pixels out at each level, which is all of it at its finest, the picture itself. So
+        its light is blurred by that before, and what lies on levels that are finer than pixels by their mean variance.
+        """
+        variance = self.radius * self.radius
+        missing = min(variance, _SHARPNESS)
+        fine, amounts = self._find_amounts(math.sqrt(variance - missing))
+        soft = draw.blur(light, math.sqrt(missing), self.edge)
+        glow = self._spread(draw, soft, draw.size, _find_shares(amounts), self.edge)
+        finest = sum(amount for amount, _ in fine)
+        if finest <= 0.0:
+            return glow
+        narrow = sum(amount * missing * 4.0**level for amount, level in fine) / finest
+        share = finest / (finest + sum(amounts))
+        return draw.point("bloom_fine", glow=glow, fine=draw.blur(light, math.sqrt(narrow), self.edge), share=share)
 
     def _spread(
         self, draw: Draw, light: Pixels, size: Size, shares: list[float], edge: Edge, first: bool = True
@@ -134,20 +168,23 @@ class Bloom(Filter):
         overlap = {"image": 3, "level": 0}
         return draw("bloom_grow", image=below, level=light, size=size, edge=edge, overlap=overlap, share=shares[0])
 
-    def _shares(self) -> list[float]:
-        """Of every level, the part of its glow that comes from the levels below it."""
-        last, part = _levels(self.radius)
-        # What lies on each level. What would lie on levels finer than the picture stays on its finest, the first.
-        amounts = [0.0] * (last + 2)
+    def _find_amounts(self, sigma: float) -> tuple[list[tuple[float, int]], list[float]]:
+        """How much light lies on each level: on those finer than the picture, with their numbers, and on the others."""
+        last, part = _levels(sigma)
+        fine: list[tuple[float, int]] = []
+        amounts: list[float] = []
         rest = 1.0
         for level in range(min(last - _OCTAVES, 0), last + 2):
             octave = last + part - level  # from the radius to how wide this level is, in halvings
             share = self.scatter ** min(max(_OCTAVES + 1.0 - octave, 0.0), 1.0) * (part if level == last else 1.0)
             here = rest if level == last + 1 else rest * (1.0 - share)
-            amounts[max(level, 0)] += here * max(curve_at(self.levels, 1.0 - octave / _OCTAVES), _FAINTEST)
+            amount = here * max(curve_at(self.levels, 1.0 - octave / _OCTAVES), _FAINTEST)
+            if level < 0:
+                fine.append((amount, level))
+            else:
+                amounts.append(amount)
             rest -= here
-        below = [sum(amounts[level:]) for level in range(last + 3)]
-        return [below[level + 1] / below[level] if below[level] > 0.0 else 1.0 for level in range(last + 1)]
+        return fine, amounts
 
 
 def _can_halve(size: Size, edge: Edge) -> bool:
@@ -165,3 +202,9 @@ def _levels(sigma: float) -> tuple[int, float]:
     variance = sigma * sigma
     last = int(math.log(1.0 + variance / 1.5, 4.0))
     return last, (variance - 1.5 * (4.0**last - 1.0)) / (4.5 * 4.0**last)
+
+
+def _find_shares(amounts: list[float]) -> list[float]:
+    """Of every level, the part of its glow that comes from the levels below it."""
+    below = [sum(amounts[level:]) for level in range(len(amounts) + 1)]
+    return [below[level + 1] / below[level] if below[level] > 0.0 else 1.0 for level in range(len(amounts) - 1)]

@@ -66,6 +66,9 @@ vec4 bloom_grow(float share) {
     return mix(level_at(pixel), sum, share);
 }
 
+// `fine` is the light of levels that are finer than pixels.
+vec4 bloom_fine(vec4 glow, vec4 fine, float share) { return mix(glow, fine, share); }
+
 vec4 bloom_tint(vec4 glow, vec4 tint) { return vec4(glow.rgb * tint.rgb, glow.a); }
 
 vec4 bloom(vec4 image, vec4 glow, float intensity, int mode) {

@@ -298,7 +298,7 @@ def test_the_shape_of_the_glow_is_the_same_at_any_size(run, scatter):
 
 
 @pytest.mark.parametrize("hole", [np.nan, np.inf, -np.inf])
-@pytest.mark.parametrize("values", [{}, {"threshold": 0.5}, {"firefly": True}])
+@pytest.mark.parametrize("values", [{}, {"threshold": 0.5}, {"firefly": True}, {"exact": True}])
 def test_a_hole_does_not_spread(run, hdr, hole, values):
     picture = hdr(33, 29)
     picture[14, 15, 0] = hole
@@ -311,3 +311,38 @@ def test_a_rendered_frame(run, rendered_frame):
     expected = pyramid(picture, 25.6, 0.7)
     found = glow_of(run, picture, 25.6)
     np.testing.assert_allclose(found, expected, rtol=1e-5, atol=1e-6 * float(expected.max()))
+
+
+@pytest.mark.parametrize(("radius", "scatter"), [(0.02, 0.7), (0.05, 0.6), (0.03, 1.0)])
+def test_an_exact_glow_has_the_same_variance_at_any_size(run, radius, scatter):
+    """Octaves 4 to 0 below the radius and one above, each of which passes `scatter` of what it gets on to the next."""
+    found, expected = [], []
+    for height in (135, 270, 540):
+        picture = np.zeros((height, height, 4), np.float32)
+        picture[height // 2, height // 2] = 1.0
+        node = Bloom(radius=radius, scatter=scatter, exact=True)
+        glow = run(node, {"image": picture}, output="glow")[..., 0].astype(np.float64)
+        away = (np.arange(height) - height // 2) / height
+        found.append((glow.sum(axis=0) @ away**2 + glow.sum(axis=1) @ away**2) / 2.0)
+        top = math.log((radius * height) ** 2 / 1.5, 4.0)
+        last = math.floor(top)
+        part = (4.0 ** (top - last) - 1.0) / 3.0
+        variances = [1.5 * 4.0**level / height**2 for level in range(last - 4, last + 2)]
+        passed = np.cumprod([1.0, scatter ** (1.0 - part), scatter, scatter, scatter, scatter * part])
+        kept = -np.diff([*passed, 0.0])
+        expected.append(kept @ variances)
+    np.testing.assert_allclose(found, expected, rtol=0.02)
+
+
+def test_an_exact_glow_is_the_same_picture_at_any_size(run, hdr):
+    """A picture whose pixels are repeated 6 times: its glow is averaged again. Without `exact` it is another one."""
+    small = hdr(90, 60, opaque=True)
+    large = small.repeat(6, 0).repeat(6, 1)
+
+    def difference(exact):
+        node = Bloom(radius=0.1, scatter=0.6, exact=exact)
+        one, many = (run(node, {"image": picture}, output="glow")[..., :3] for picture in (small, large))
+        many = many.reshape(60, 6, 90, 6, 3).mean(axis=(1, 3))
+        return np.sqrt(np.mean((one - many) ** 2) / np.mean((small[..., :3] - many) ** 2))
+
+    assert difference(True) < 0.2 * difference(False)
