@@ -94,7 +94,8 @@ class Bloom(Filter):
     firefly: Annotated[
         bool,
         Doc(
-            "Reduce the weight of single bright pixels, which would flicker (Karis 2013). Some of their light is lost."
+            "Reduce the weight of single bright pixels, which would flicker (Karis 2013). Some of their light is lost, "
+            "more of it in small pictures."
         ),
     ] = False
     exact: Annotated[

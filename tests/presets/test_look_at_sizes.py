@@ -42,6 +42,8 @@ SMOOTH = (
     "rack_focus",
     "depth_mist",
     "ground_fog",
+    "photographic_glare",
+    "dreamy_glow",
 )
 """Looks whose lengths are blurs, grain and glow: FLIP is at most 0.02."""
 GRADED = (
@@ -55,7 +57,7 @@ GRADED = (
     "morph",
 )
 """Looks that differ by more than 0.02 only because light at edges of lamps is averaged before or after a tone curve."""
-LINES = {"blueprint": 0.2, "neon_edges": 0.07, "hologram": 0.04, "emboss_and_edges": 0.05, "watercolor": 0.05}
+LINES = {"blueprint": 0.2, "neon_edges": 0.07, "hologram": 0.025, "emboss_and_edges": 0.05, "watercolor": 0.05}
 """Drawn looks, and the most that FLIP may be: between 270 and 1080 lines it was 0.30 (blueprint), 0.42 (neon_edges) and
 0.19 (hologram) while their lines were a pixel wide at every size."""
 DOTS = ("newspaper_print", "comic_ink", "risograph")
@@ -87,8 +89,10 @@ def enlarge(name: str, end: Input, height: int, step: int) -> Array:
     return enlarge_data(layer, depth, surface, height, step)
 
 
-def repeat(name: str, end: Input, height: int) -> Array:
-    """An input of a preset whose pixels are repeated, at a multiple of its height."""
+def repeat(name: str, end: Input, height: int, step: int) -> Array:
+    """A picture of a preset whose pixels are repeated, at a multiple of its height; data are those of surfaces."""
+    if end.kind is not Kind.IMAGE:
+        return enlarge(name, end, height, step)
     layer = read_input(name, end)
     return layer.repeat(height // len(layer), 0).repeat(height // len(layer), 1)
 
@@ -100,7 +104,7 @@ def render_at(
     graph = load_preset(name)
     made = {key: end for key, end in graph.inputs.items() if key != "environment"}
     arrays = {
-        key: repeat(name, end, height) if repeated else enlarge(name, end, height, step) for key, end in made.items()
+        key: repeat(name, end, height, step) if repeated else enlarge(name, end, height, step) for key, end in made.items()
     }
     size = None
     if graph.settings.size:
