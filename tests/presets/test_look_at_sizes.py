@@ -61,6 +61,10 @@ LINES = {"blueprint": 0.2, "neon_edges": 0.07, "hologram": 0.025, "emboss_and_ed
 """Drawn looks, and the most that FLIP may be: between 270 and 1080 lines it was 0.30 (blueprint), 0.42 (neon_edges) and
 0.19 (hologram) while their lines were a pixel wide at every size."""
 DOTS = ("newspaper_print", "comic_ink", "risograph")
+DRAWN = (*DOTS, *LINES, "ink_boil", "oil_painting", "pencil_sketch", "pixel_art", "toon_ink")
+"""Looks that are drawn in lines, dots or strokes of a few pixels."""
+RELIT = ("studio_light",)
+"""Mirrors of metals at edges, where enlarged colors are means of two surfaces and enlarged normals are not."""
 
 
 @cache
@@ -223,3 +227,10 @@ def test_every_preset_at_540_and_2160_lines(name: str, renderer: Renderer) -> No
     difference, small, large = measure_sizes(renderer, name, 540, 2160)
     assert difference <= 0.11
     assert encode(large).mean() == pytest.approx(encode(small).mean(), rel=0.1)
+
+
+@pytest.mark.nightly
+@pytest.mark.timeout(900)
+@pytest.mark.parametrize("name", sorted(PRESETS.keys() - {*DRAWN, *RELIT}))
+def test_every_smooth_look_of_repeated_pixels_is_the_same_at_540_and_2160_lines(name: str, renderer: Renderer) -> None:
+    assert measure_sizes(renderer, name, 540, 2160, repeated=True)[0] <= 0.02
