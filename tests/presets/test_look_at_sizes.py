@@ -108,7 +108,8 @@ def render_at(
     graph = load_preset(name)
     made = {key: end for key, end in graph.inputs.items() if key != "environment"}
     arrays = {
-        key: repeat(name, end, height, step) if repeated else enlarge(name, end, height, step) for key, end in made.items()
+        key: repeat(name, end, height, step) if repeated else enlarge(name, end, height, step)
+        for key, end in made.items()
     }
     size = None
     if graph.settings.size:
