@@ -119,22 +119,44 @@ def glow_pyramid(light: Array, shares: list[float], edge: str, firefly: bool = F
     return mix(light, grow_by_two(below, width, height, edge), shares[0])
 
 
-def pyramid_shares(radius: float, scatter: float, levels: tuple[float, ...]) -> list[float]:
-    """How much of each level of the pyramid comes from the smaller ones, for a glow as wide as `radius`."""
+def pyramid_amounts(radius: float, scatter: float, levels: tuple[float, ...]) -> tuple[list[float], list[float]]:
+    """How much of a glow lies on each level: on the four finer than pixels, from level -4, and on the others."""
     variance = radius * radius
     last = int(np.log(1.0 + variance / 1.5) / np.log(4.0))
     part = (variance - 1.5 * (4.0**last - 1.0)) / (4.5 * 4.0**last)
     octaves = 4
-    amounts, rest = [0.0] * (last + 2), 1.0
+    fine, amounts, rest = [0.0] * octaves, [0.0] * (last + 2), 1.0
     for level in range(min(last - octaves, 0), last + 2):
         octave = last + part - level  # from the radius to how wide this level is, in halvings
         share = scatter ** min(max(octaves + 1.0 - octave, 0.0), 1.0) * (part if level == last else 1.0)
         here = rest if level == last + 1 else rest * (1.0 - share)
         height = float(curve_at(levels, np.array(1.0 - octave / octaves)))
-        amounts[max(level, 0)] += here * max(height, 1e-12)
+        (fine if level < 0 else amounts)[level] = here * max(height, 1e-12)
         rest -= here
-    below = [sum(amounts[level:]) for level in range(last + 3)]
-    return [below[level + 1] / below[level] if below[level] > 0.0 else 1.0 for level in range(last + 1)]
+    return fine, amounts
+
+
+def pyramid_shares(amounts: list[float]) -> list[float]:
+    """How much of each level of the pyramid comes from the smaller ones."""
+    below = [sum(amounts[level:]) for level in range(len(amounts) + 1)]
+    return [below[level + 1] / below[level] if below[level] > 0.0 else 1.0 for level in range(len(amounts) - 1)]
+
+
+def spread_light(
+    light: Array, radius: float, scatter: float, levels: tuple[float, ...], edge: str, firefly: bool, exact: bool
+) -> Array:
+    """The glow of a light. An exact one has as much variance at each level as the square of its pixels times 1.5."""
+    variance = radius * radius
+    missing = min(variance, 1.5) if exact else 0.0
+    fine, amounts = pyramid_amounts(float(np.sqrt(variance - missing)), scatter, levels)
+    finest = sum(fine)
+    if not exact:
+        amounts[0] += finest  # what is finer than the picture stays on its finest level
+    glow = glow_pyramid(blur_gaussian(light, float(np.sqrt(missing)), edge), pyramid_shares(amounts), edge, firefly)
+    if not exact or finest <= 0.0:
+        return glow
+    narrow = sum(amount * missing * 4.0 ** (level - len(fine)) for level, amount in enumerate(fine)) / finest
+    return mix(glow, blur_gaussian(light, float(np.sqrt(narrow)), edge), finest / (finest + sum(amounts)))
 
 
 def bloom(
@@ -149,13 +171,14 @@ def bloom(
     knee: float,
     limit: float,
     firefly: bool,
+    exact: bool,
     edge: Literal["clamp", "reflect", "wrap"],
 ) -> tuple[Array, Array]:
     """Let bright light bleed over its surroundings (Jimenez 2014): the picture with its glow, and the glow alone."""
     light = image
     if threshold > 0.0 or limit < 65504.0:
         light = bright_light(image, threshold, knee, limit)
-    glow = glow_pyramid(light, pyramid_shares(radius, scatter, levels), edge, firefly)
+    glow = spread_light(light, radius, scatter, levels, edge, firefly, exact)
     glow = join(glow[..., :3] * rgb(tint), glow[..., 3:])
     color = image[..., :3]
     shone = color + intensity * glow[..., :3] if mode == "add" else mix(color, glow[..., :3], intensity)
