@@ -1,0 +1,113 @@
+"""The whole editor on a device without pixels, its panels drawn into a still window: opened in a hundredth of a second.
+
+What needs pictures, threads or an operating system's window is tested in tests/gui; here is what panels show and where,
+and what a click in them does to the document.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pytest
+from drawn_shapes import Point, Shape
+from halation.authoring.background.cache import BackgroundCache
+from halation.authoring.commands import ReplaceGraph
+from halation.authoring.edits.element_id import ElementId
+from halation.compiler import NULL
+from halation.editor.theme.fonts import Fonts
+from halation.editor.theme.palette import PALETTES
+from halation.editor.window.assembly import assemble, take_apart
+from halation.editor.window.contexts import Contexts, compose_contexts
+from halation.editor.window.editor import Editor
+from halation.editor.window.panels import DOCKED, OVERLAYS, Panel
+from halation.graph import Graph
+from halation.resources.sandbox import UNRESTRICTED
+from null_device import NullDevice
+from still_window import StillWindow, open_still
+
+
+@dataclass
+class StillEditor:
+    """An editor and the pane that its panels are drawn into, one at a time."""
+
+    pane: StillWindow
+    editor: Editor
+    contexts: Contexts
+    panels: dict[str, Panel] = field(default_factory=dict[str, Panel])
+
+    @property
+    def places(self) -> dict[str, tuple[float, float, float, float]]:
+        return self.editor.places
+
+    def show(self, title: str, frames: int = 3) -> list[Shape]:
+        """Draw a panel or a dialog; all that it has drawn in the last frame."""
+        body = self.find(title).draw
+        self.pane.draw(self._frame(body), frames)
+        return [*self.pane.shapes.shapes, *self.pane.widgets]
+
+    def click(self, title: str, place: str, button: int = 0, part: Point = (0.5, 0.5)) -> None:
+        """Click at a part of a place of a panel, by the place's name."""
+        self.show(title, 1)
+        left, top, right, bottom = self.places[place]
+        x, y = left + (right - left) * part[0], top + (bottom - top) * part[1]
+        self.pane.click((x, y, x, y), self._frame(self.find(title).draw), button)
+        self.show(title, 2)
+
+    def find(self, title: str) -> Panel:
+        """The panel with a title, made on first use."""
+        if title not in self.panels:
+            makers = {docked.title: docked.make for docked in DOCKED} | dict(OVERLAYS)
+            self.panels[title] = makers[title](self.contexts)  # pyright: ignore[reportArgumentType]
+        return self.panels[title]
+
+    def select(self, *names: str) -> None:
+        """Select elements."""
+        self.editor.session.select([ElementId(name) for name in names])
+
+    def _frame(self, body: Callable[[], Any]) -> Callable[[], Any]:
+        def draw() -> Any:
+            self.places.clear()
+            return body()
+
+        return draw
+
+
+def _make_at_once(cache: BackgroundCache[Any, Any], key: Any) -> Any:
+    """What a thread would have made a few frames later."""
+    if key not in cache._finished:
+        cache._finished[key] = cache._make(key)
+    return cache._finished[key]
+
+
+@contextmanager
+def open_still_editor(
+    folder: Path,
+    graph: Graph | Path | None = None,
+    *,
+    size: Point = (340.0, 900.0),
+    at: Point = (20.0, 30.0),
+    scale: float = 1.0,
+    theme: str = "dark",
+    screen: Point = (1600.0, 1200.0),
+) -> Iterator[StillEditor]:
+    """An editor with a graph or a graph file. What it remembers is in a folder of its own there."""
+    with open_still(size, at, scale, PALETTES[theme], screen) as pane, pytest.MonkeyPatch.context() as patch:
+        patch.setattr(BackgroundCache, "get", _make_at_once)
+        editor = assemble(NullDevice(NULL), UNRESTRICTED, folder / "state")
+        try:
+            editor.store.change(theme=theme, ui_scale=scale)
+            assert pane.font is not None
+            editor.interface.fonts = Fonts(pane.font, pane.font, pane.font)
+            contexts = compose_contexts(editor)
+            if isinstance(graph, Path):
+                editor.session.files.open(graph)
+            elif graph is not None:
+                editor.session.apply(ReplaceGraph("Start", graph))
+            yield StillEditor(pane, editor, contexts)
+        finally:
+            editor.commands.closing = True
+            take_apart(editor)

@@ -1,0 +1,161 @@
+"""Panels drawn by the real library without a window, a device's screen or a clock: in milliseconds, and always alike.
+
+Places and texts come from the library itself, with the editor's font. What panels draw with their draw lists is written
+down as `drawn_shapes` does; widgets are written down with their labels and places.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import imgui_bundle
+import pytest
+from drawn_shapes import DrawnShapes, Point, Shape
+from halation.editor.theme.palette import DARK, Palette
+from halation.editor.theme.style import EM, apply
+from imgui_bundle import imgui
+
+WIDGETS = (
+    "text", "text_unformatted", "text_disabled", "text_wrapped", "text_colored", "separator_text", "button",
+    "small_button", "checkbox", "radio_button", "selectable", "menu_item", "begin_menu", "tree_node", "tree_node_ex",
+    "invisible_button", "input_text", "input_text_with_hint", "input_text_multiline", "drag_float", "input_int",
+    "slider_float", "slider_int", "dummy", "image", "separator", "begin_combo", "progress_bar", "collapsing_header",
+)  # fmt: skip
+"""Functions of the library that draw a widget, and leave its place as that of the last item."""
+
+
+_NO_HINTS = 1
+"""What FreeType's loader in the library calls NoHinting."""
+
+
+class SeenShapes(DrawnShapes):
+    """Writes down what more than one panel draws."""
+
+    def add_image(self, picture: Any, low: Any, high: Any, *words: Any) -> None:
+        self._add("image", (low, high), (), 0)
+
+    def add_rect_filled_multi_color(self, low: Any, high: Any, *colors: int) -> None:
+        self._add("shaded rect", (low, high), (), colors[0], " ".join(map(str, colors)))
+
+    def add_polyline(self, points: Any, color: int, width: float, flags: int) -> None:
+        self._add("polyline", tuple(points), (width,), color, str(flags))
+
+    def add_triangle(self, a: Any, b: Any, c: Any, color: int, width: float = 1.0) -> None:
+        self._add("outlined triangle", (a, b, c), (width,), color)
+
+    def path_arc_to(self, at: Any, radius: float, start: float, end: float, *words: Any) -> None:
+        self._add("arc", (at,), (radius,), 0, f"{start:.6f} {end:.6f}")
+
+    def path_stroke(self, color: int, width: float, flags: int = 0) -> None:
+        self._add("stroke", (), (width,), color, str(flags))
+
+
+class StillWindow:
+    """A pane of a size at a place, in which something is drawn frame by frame."""
+
+    def __init__(self, at: Point, size: Point) -> None:
+        self.at, self.size = at, size
+        self.shapes = SeenShapes()
+        self.widgets: list[Shape] = []
+        self.font: imgui.ImFont | None = None
+
+    def draw(self, body: Callable[[], Any], frames: int = 1) -> Any:
+        """Draw some frames; what the body returns in the last one."""
+        answer = None
+        for _ in range(frames):
+            self.shapes.shapes.clear()
+            self.widgets.clear()
+            imgui.new_frame()
+            imgui.set_next_window_pos(self.at)
+            imgui.set_next_window_size(self.size)
+            imgui.begin("pane", None, int(imgui.WindowFlags_.no_title_bar) | int(imgui.WindowFlags_.no_saved_settings))
+            answer = body()
+            imgui.end()
+            imgui.end_frame()
+        return answer
+
+    def point(self, at: Point) -> None:
+        """Move the mouse."""
+        imgui.get_io().add_mouse_pos_event(*at)
+
+    def click(self, rect: tuple[float, float, float, float], body: Callable[[], Any], button: int = 0) -> list[Any]:
+        """Click in the middle of a place; what the body returns in the frames of the press, the release and after."""
+        self.point(((rect[0] + rect[2]) / 2, (rect[1] + rect[3]) / 2))
+        self.draw(body, 2)
+        answers = []
+        for is_down in (True, False):
+            imgui.get_io().add_mouse_button_event(button, is_down)
+            answers.append(self.draw(body))
+        return [*answers, self.draw(body)]
+
+    def press(self, key: imgui.Key, body: Callable[[], Any]) -> Any:
+        """Press and release a key; what the body returns in the frame of the press."""
+        imgui.get_io().add_key_event(key, True)
+        answer = self.draw(body)
+        imgui.get_io().add_key_event(key, False)
+        self.draw(body)
+        return answer
+
+    def list_texts(self) -> list[str]:
+        """All words, drawn or of widgets, in their order."""
+        drawn = [shape.text for shape in self.shapes.list_kinds("text")]
+        return [*drawn, *(label for shape in self.widgets if (label := shape.text.split("##")[0]))]
+
+    def find(self, kind: str, text: str = "") -> Shape:
+        """The one widget of a kind with this label or identity."""
+        (widget,) = [shape for shape in self.widgets if shape.kind == kind and text in shape.text]
+        return widget
+
+    def _wrap(self, name: str, call: Callable[..., Any]) -> Callable[..., Any]:
+        def draw(*words: Any, **options: Any) -> Any:
+            answer = call(*words, **options)
+            low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+            label = next((word for word in words if isinstance(word, str)), "")
+            self.widgets.append(Shape(name, ((low.x, low.y), (high.x, high.y)), (), 0, label))
+            return answer
+
+        return draw
+
+    def watch(self, patch: pytest.MonkeyPatch) -> None:
+        """Write down what is drawn from now on."""
+        for name in WIDGETS:
+            patch.setattr(imgui, name, self._wrap(name, getattr(imgui, name)))
+        for name in ("get_window_draw_list", "get_foreground_draw_list", "get_background_draw_list"):
+            patch.setattr(imgui, name, lambda *words: self.shapes)
+
+
+@contextmanager
+def open_still(
+    size: Point = (320.0, 600.0), at: Point = (20.0, 30.0), scale: float = 1.0, palette: Palette = DARK,
+    screen: Point = (1600.0, 1200.0),
+) -> Iterator[StillWindow]:  # fmt: skip
+    """A context of the library with the editor's style and font, and a pane in it.
+
+    The font has no hints: then glyphs have no whole pixels, and texts grow evenly with the interface.
+    """
+    context = imgui.create_context()
+    try:
+        io = imgui.get_io()
+        io.display_size = imgui.ImVec2(screen[0] * scale, screen[1] * scale)
+        io.delta_time = 1.0 / 60.0
+        io.backend_flags |= int(imgui.BackendFlags_.renderer_has_textures)
+        io.set_ini_filename("")
+        folder = Path(imgui_bundle.__file__).parent / "assets/fonts"
+        plain = imgui.ImFontConfig()
+        plain.font_loader_flags = _NO_HINTS
+        font = io.fonts.add_font_from_file_ttf(str(folder / "Roboto/Roboto-Regular.ttf"), EM, plain)
+        icons = imgui.ImFontConfig()
+        icons.font_loader_flags = _NO_HINTS
+        icons.merge_mode = True
+        io.fonts.add_font_from_file_ttf(str(folder / "Font_Awesome_6_Free-Solid-900.otf"), 0.86 * EM, icons)
+        apply(palette, scale)
+        window = StillWindow((at[0] * scale, at[1] * scale), (size[0] * scale, size[1] * scale))
+        window.shapes.em, window.font = EM * scale, font
+        with pytest.MonkeyPatch.context() as patch:
+            window.watch(patch)
+            yield window
+    finally:
+        imgui.destroy_context(context)
