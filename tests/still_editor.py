@@ -18,14 +18,17 @@ from halation.authoring.background.cache import BackgroundCache
 from halation.authoring.commands import ReplaceGraph
 from halation.authoring.edits.element_id import ElementId
 from halation.compiler import NULL
+from halation.editor.browser import listing
 from halation.editor.theme.fonts import Fonts
 from halation.editor.theme.palette import PALETTES
+from halation.editor.toolkit.textures import Textures
 from halation.editor.window.assembly import assemble, take_apart
 from halation.editor.window.contexts import Contexts, compose_contexts
 from halation.editor.window.editor import Editor
 from halation.editor.window.panels import DOCKED, OVERLAYS, Panel
 from halation.graph import Graph
 from halation.resources.sandbox import UNRESTRICTED
+from imgui_bundle import imgui
 from null_device import NullDevice
 from still_window import StillWindow, open_still
 
@@ -97,6 +100,8 @@ def open_still_editor(
     """An editor with a graph or a graph file. What it remembers is in a folder of its own there."""
     with open_still(size, at, scale, PALETTES[theme], screen) as pane, pytest.MonkeyPatch.context() as patch:
         patch.setattr(BackgroundCache, "get", _make_at_once)
+        patch.setattr(listing._FolderReader, "start", listing._FolderReader.run)
+        patch.setattr(Textures, "get", lambda textures, key, make: (make(), imgui.ImTextureRef(1))[1])
         editor = assemble(NullDevice(NULL), UNRESTRICTED, folder / "state")
         try:
             editor.store.change(theme=theme, ui_scale=scale)
@@ -110,4 +115,5 @@ def open_still_editor(
             yield StillEditor(pane, editor, contexts)
         finally:
             editor.commands.closing = True
+            editor.exports.all = ()  # a render that a test made up has no process that ends
             take_apart(editor)

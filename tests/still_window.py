@@ -49,6 +49,12 @@ class SeenShapes(DrawnShapes):
     def path_arc_to(self, at: Any, radius: float, start: float, end: float, *words: Any) -> None:
         self._add("arc", (at,), (radius,), 0, f"{start:.6f} {end:.6f}")
 
+    def path_line_to(self, at: Any) -> None:
+        self._add("path line", (at,), (), 0)
+
+    def path_bezier_cubic_curve_to(self, a: Any, b: Any, c: Any, *words: Any) -> None:
+        self._add("path curve", (a, b, c), (), 0)
+
     def path_stroke(self, color: int, width: float, flags: int = 0) -> None:
         self._add("stroke", (), (width,), color, str(flags))
 
