@@ -162,3 +162,10 @@ def test_a_graph_without_files_minds_no_environment(monkeypatch):
     text = """{"halation": 1, "settings": {"size": [8, 8]}, "outputs": {"o": {"type": "Image"}},
         "nodes": {"c": {"type": "checker"}}, "links": {"outputs.o": "c.out"}}"""
     assert np.isfinite(hal.render(document.loads(text, sandbox=UNRESTRICTED))["o"]).all()
+
+
+def test_names_of_the_users_config_that_are_not_utf8_are_found_at_once(house, monkeypatch):
+    house.write_bytes(house.read_bytes().replace(b"Screen", "Schirm \u00fc".encode("latin-1")))
+    monkeypatch.setenv("OCIO", str(house))
+    with pytest.raises(UsageError, match=r"^\$OCIO: "):
+        get_default_color_manager().config  # noqa: B018

@@ -205,3 +205,18 @@ def test_the_pictures_of_a_graph(tmp_path):
         Path("lib/own.exr"),
         Path("lib/deep.exr"),
     }
+
+
+def test_what_woke_the_thread_is_taken_note_of_once(monkeypatch):
+    """Else it would compare files for ever, without a pause."""
+    made = FileWatcher(sandbox=UNRESTRICTED)
+    seen = list[bool]()
+
+    def settle() -> None:
+        seen.append(made._wake.changed.is_set())
+        made._wake.ended.set()
+
+    monkeypatch.setattr(made, "_settle", settle)
+    made._wake.changed.set()
+    made._run()
+    assert seen == [False]

@@ -203,3 +203,10 @@ def drag_box(box: Box, grip: Grip, by: Point) -> Box:
             bottom + (by[1] if "s" in grip else 0.0),
         )
     )
+
+
+def share_height(room: float, below: float, table: float) -> tuple[float, float]:
+    """The heights of the picture and of the table in a panel, over `below` pixels of text: a table takes no more than
+    two fifths of it."""
+    table = min(table, room * 0.4)
+    return max(room - below - table, 32.0), table

@@ -21,7 +21,7 @@ from .banner import draw_banner
 from .brush_bar import draw_brush_bar
 from .finding import InvalidPixelSearch
 from .focus import is_distance
-from .geometry import Sight
+from .geometry import Sight, share_height
 from .ground import depth_at
 from .hand import ViewerInput
 from .handles import pixel_place, takes_position
@@ -130,8 +130,8 @@ class Viewer:
         row = imgui.get_text_line_height() + 2 * imgui.get_style().cell_padding.y
         table = row * TABLE_LINES if viewer.table else 0.0
         width, room = inner.max.x - start[0], inner.max.y - start[1]
-        table = min(table, room * 0.4)
-        sight = self._catch(images, (max(width, 32.0), max(room - below - table, 32.0)))
+        height, table = share_height(room, below, table)
+        sight = self._catch(images, (max(width, 32.0), height))
         look = self._draw_picture(images, sight)
         self._draw_messages(images, sight)
         self._read(images, sight, look)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from halation.color.management import get_default_color_manager
 from halation.editor.inspector.layers import Layers, describe_layer, small_picture
 from halation.media import ImageInfo, read_info, write_picture
 from halation.nodes import Kind
@@ -79,3 +80,13 @@ def test_the_line_about_a_file(picture):
     assert describe_layer(header, "") == "200 x 40, RGBA, float16, color"
     assert describe_layer(header, "depth") == "200 x 40, Z, float32, data"
     assert describe_layer(header, "Deep").startswith("has no layer 'Deep'")
+
+
+def test_a_space_that_is_not_known_yet_is_no_error(layers, picture, monkeypatch):
+    manager = get_default_color_manager()
+    assert layers.space(picture, "beauty", manager, "auto") == ("", False)
+    for spaces, expected in (("no such space", ("no such space", True)), ({}, ("", False))):
+        monkeypatch.setattr(layers._spaces, "get", lambda key, spaces=spaces: spaces)
+        waited(lambda: layers.header(picture))
+        assert layers.space(picture, "beauty", manager, "auto") == expected
+        assert layers.space(picture, "nowhere", manager, "auto") == expected

@@ -118,3 +118,7 @@ def test_the_part_that_is_played_and_what_is_seen():
         state.zoom(session, 50.0, 0.5)
     assert state.view is None
     assert [state.next_loop() or state.loop for _ in range(3)] == ["once", "ping-pong", "loop"]
+
+
+def test_a_frame_outside_of_a_course_is_its_beginning():
+    assert [Course(3, 6).place(frame) for frame in (2, 3, 5, 6, 7)] == [0, 0, 2, 3, 0]

@@ -176,3 +176,11 @@ def test_grips_lie_an_arm_beside_the_middle_and_above_the_edge(rotation: float, 
     assert find_grip(gizmo, "move") == pytest.approx(move) and find_grip(gizmo, "turn") == pytest.approx(turn)
     small = make_transform(rotation=rotation, scale=(0.25, 0.5))
     assert math.dist(find_grip(small, "move"), (160.0, 90.0)) == pytest.approx(30.0), "its arm is as long on the screen"
+
+
+def test_grips_of_a_frame_that_was_not_moved_are_on_its_border():
+    gizmo = make_transform()
+    places = {"nw": (0.0, 0.0), "n": (160.0, 0.0), "ne": (320.0, 0.0), "e": (320.0, 90.0), "se": (320.0, 180.0)}
+    places |= {"s": (160.0, 180.0), "sw": (0.0, 180.0), "w": (0.0, 90.0), "x": (240.0, 0.0), "y": (0.0, 135.0)}
+    places |= {"turn": (160.0, -30.0)}
+    assert {grip.part: grip.at for grip in gizmo.grips if grip.part != "move"} == places
