@@ -55,10 +55,49 @@ class StillEditor:
     def click(self, title: str, place: str, button: int = 0, part: Point = (0.5, 0.5)) -> None:
         """Click at a part of a place of a panel, by the place's name."""
         self.show(title, 1)
-        left, top, right, bottom = self.places[place]
-        x, y = left + (right - left) * part[0], top + (bottom - top) * part[1]
+        x, y = self.find_point(place, part)
         self.pane.click((x, y, x, y), self._frame(self.find(title).draw), button)
         self.show(title, 2)
+
+    def drag(self, title: str, place: str, start: Point, end: Point) -> None:
+        """Press at a part of a place and let go at another one."""
+        body, io = self._frame(self.find(title).draw), imgui.get_io()
+        first, last = self.find_point(place, start), self.find_point(place, end)
+        self.pane.point(first)
+        self.pane.draw(body, 2)
+        io.add_mouse_button_event(0, True)
+        self.pane.draw(body)
+        for part in (0.5, 1.0):
+            self.pane.point((first[0] + (last[0] - first[0]) * part, first[1] + (last[1] - first[1]) * part))
+            self.pane.draw(body)
+        io.add_mouse_button_event(0, False)
+        self.pane.draw(body, 2)
+
+    def turn_wheel(self, title: str, place: str, steps: float) -> None:
+        """Turn the wheel over a place, with Ctrl held."""
+        body, io = self._frame(self.find(title).draw), imgui.get_io()
+        self.pane.point(self.find_point(place))
+        self.pane.draw(body, 2)
+        io.add_key_event(imgui.Key.mod_ctrl, True)
+        io.add_mouse_wheel_event(0.0, steps)
+        self.pane.draw(body)
+        io.add_key_event(imgui.Key.mod_ctrl, False)
+        self.pane.draw(body)
+
+    def calm(self, title: str) -> None:
+        """Leave what is open, take the pointer away, and wait: the next click is no second one."""
+        body, io = self._frame(self.find(title).draw), imgui.get_io()
+        for _ in range(2):
+            self.pane.press(imgui.Key.escape, body)
+        self.pane.point((1.0, 1.0))
+        io.delta_time = 1.0
+        self.pane.draw(body)
+        io.delta_time = 1.0 / 60.0
+
+    def find_point(self, place: str, part: Point = (0.5, 0.5)) -> Point:
+        """A point in a place, by the place's name."""
+        left, top, right, bottom = self.places[place]
+        return left + (right - left) * part[0], top + (bottom - top) * part[1]
 
     def find(self, title: str) -> Panel:
         """The panel with a title, made on first use."""
