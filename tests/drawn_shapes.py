@@ -45,8 +45,8 @@ class DrawnShapes:
     def add_rect_filled(self, start: Any, end: Any, color: int, rounding: float = 0.0, flags: int = 0) -> None:
         self._add("filled rect", (start, end), (rounding,), color, str(flags))
 
-    def add_circle(self, at: Any, radius: float, color: int, segments: int = 0, width: float = 1.0) -> None:
-        self._add("circle", (at,), (radius, width), color)
+    def add_circle(self, at: Any, radius: float, color: int, segments: int = 0, thickness: float = 1.0) -> None:
+        self._add("circle", (at,), (radius, thickness), color)
 
     def add_circle_filled(self, at: Any, radius: float, color: int, segments: int = 0) -> None:
         self._add("disk", (at,), (radius,), color)

@@ -34,11 +34,6 @@ _NO_HINTS = 1
 class SeenShapes(DrawnShapes):
     """Writes down what more than one panel draws."""
 
-    def add_circle(
-        self, at: Any, radius: float, color: int, segments: int = 0, thickness: float = 1.0, width: float | None = None
-    ) -> None:
-        super().add_circle(at, radius, color, segments, thickness if width is None else width)
-
     def add_image(self, picture: Any, low: Any, high: Any, *words: Any) -> None:
         self._add("image", (low, high), (), 0)
 

@@ -183,3 +183,9 @@ def test_random_loops_make_what_python_makes(renderer: Renderer, parts: list[tup
     ones = {"image": np.ones_like(PICTURE)}
     found = renderer.render(graph_of(kind(), ones), RenderRequest(ones))["out"]
     assert (found == made["n"]).all(), code
+
+
+def test_loops_that_make_a_million_rounds_together_are_believed() -> None:
+    """2^20 of them, 1024 times 1024 with the last test of each loop; one more is counted at run time."""
+    nest = "for (int i = 0; i < 1023; i++) for (int j = 0; j < %d; j++) n += i;"
+    assert (checks(nest % 1023), checks(nest % 1024)) == (0, 1)

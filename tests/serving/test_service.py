@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import io
 import json
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+import pytest
 from halation.compiler import planner
 from halation.resources.sandbox import UNRESTRICTED
+from halation.serving.listening import make_line_writer
 from halation.serving.request_queue import ServiceClient
 from halation.serving.service import RenderService, ServiceLimits
 from halation.serving.service_requests import ServiceRequest
@@ -48,3 +52,18 @@ def test_a_graph_is_lowered_once_for_many_values(renderer, monkeypatch, tmp_path
     write_graph(path, {"type": "saturation"})
     assert find_brightness() == 1.0
     assert len(lowered) == 2
+
+
+@pytest.mark.parametrize("fault", [BrokenPipeError, ValueError])
+def test_a_client_that_cannot_be_written_to_is_dropped(fault) -> None:
+    gone, replies = list[bool](), io.BytesIO()
+    write = make_line_writer(replies, lambda: gone.append(True))
+    write(b"one\n")
+    assert replies.getvalue() == b"one\n" and not gone
+
+    def fail(line: bytes) -> int:
+        raise fault
+
+    broken: Any = SimpleNamespace(write=fail, flush=lambda: None)
+    make_line_writer(broken, lambda: gone.append(True))(b"two\n")
+    assert gone == [True]

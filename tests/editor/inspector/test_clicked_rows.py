@@ -1,4 +1,4 @@
-"""Rows of the inspector: where they are, and that clicks and drags in them do the same on an interface of twice the size.
+"""Rows of the inspector: where they are, and that clicks and drags in them do the same on an interface twice the size.
 
 What an act does is read off the document, and compared between two windows: nothing here knows what it should be, only
 that a field's part is a part of it, whatever its place and size are.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -114,9 +115,12 @@ def test_names_and_fields_have_a_column_each(tmp_path: Path, scale: float) -> No
                 if field := still.places.get(key.replace("name", "field", 1)):
                     assert field[0] == pytest.approx((28.0 + 6.0) * scale + column, abs=1.5)
                     assert abs(field[1] - top) <= 4.0 * scale, "a note on a line of text has no frame"
-                    assert field[2] in (pytest.approx(352.0 * scale, abs=1.0), pytest.approx(328.0 * scale, abs=1.0))
+                    assert not spare or field[2] in (
+                        pytest.approx(352.0 * scale, abs=1.0),
+                        pytest.approx(328.0 * scale, abs=1.0),
+                    )
                 tops.append(top)
-            steps = [round(after - before) for before, after in zip(tops, tops[1:], strict=False)]
+            steps = [round(after - before) for before, after in pairwise(tops)]
             assert min(steps) == 30 * scale, "a field is 24 high, and 6 are between two"
 
 

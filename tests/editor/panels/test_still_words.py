@@ -7,14 +7,14 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from halation.authoring.commands import SetFrameRange
+from halation.authoring.commands import AnimateValues, SetFrameRange
 from halation.editor.matching.window import MatchWindow
 from halation.editor.theme.palette import DARK
-from halation.editor.theme.style import u32
+from halation.editor.theme.style import mix, u32
 from halation.editor.timeline.timeline import Timeline
 from halation.editor.viewer import overlays
 from halation.editor.viewer.geometry import share_height
-from halation.graph import Graph, Port
+from halation.graph import Graph, Key, Keys, Port
 from halation.nodes import catalogue
 from imgui_bundle import imgui
 from still_editor import open_still_editor
@@ -131,3 +131,11 @@ def test_a_table_takes_no_more_than_two_fifths() -> None:
     assert share_height(500.0, 40.0, 150.0) == (310.0, 150.0)
     assert share_height(500.0, 40.0, 300.0) == (260.0, 200.0)
     assert share_height(60.0, 40.0, 0.0) == (32.0, 0.0)
+
+
+def test_names_of_values_are_fainter_than_those_of_nodes(tmp_path: Path) -> None:
+    with open_still_editor(tmp_path, GRAPH, size=(900.0, 400.0)) as still:
+        still.editor.session.apply(AnimateValues({Port("glow", "intensity"): Keys((Key(1, 0.2), Key(9, 0.8)))}, "Move"))
+        still.show("Animation")
+        colors = {shape.text: shape.color for shape in still.pane.shapes.list_kinds("text")}
+        assert colors["glow"] == u32(DARK.text) and colors["intensity"] == u32(mix(DARK.text, DARK.dim, 0.3))
