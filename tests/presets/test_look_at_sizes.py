@@ -61,8 +61,8 @@ LINES = {"blueprint": 0.2, "neon_edges": 0.07, "hologram": 0.025, "emboss_and_ed
 """Drawn looks, and the most that FLIP may be: between 270 and 1080 lines it was 0.30 (blueprint), 0.42 (neon_edges) and
 0.19 (hologram) while their lines were a pixel wide at every size."""
 DOTS = ("newspaper_print", "comic_ink", "risograph")
-DRAWN = (*DOTS, *LINES, "ink_boil", "oil_painting", "pencil_sketch", "pixel_art", "toon_ink")
-"""Looks that are drawn in lines, dots or strokes of a few pixels."""
+DRAWN = (*DOTS, "blueprint", "emboss_and_edges", "ink_boil", "oil_painting", "pencil_sketch", "toon_ink")
+"""Looks of lines, dots or strokes that a small picture cannot hold."""
 RELIT = ("studio_light",)
 """Mirrors of metals at edges, where enlarged colors are means of two surfaces and enlarged normals are not."""
 
