@@ -122,9 +122,9 @@ def test_a_function_of_scripts_is_tried_by_the_nodes_that_need_it() -> None:
     assert list_scripted_nodes(path, lines.index("SEARCH_LENGTHS = " + lines[11].partition(" = ")[2]) + 1) == ["smaa"]
 
 
-@pytest.mark.parametrize(("code", "was_noticed"), [(1, True), (0, False)])
+@pytest.mark.parametrize(("code", "fails_again", "was_noticed"), [(1, True, True), (0, False, False)])
 def test_a_fault_is_seen_by_the_tests_and_taken_out_again(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, code: int, was_noticed: bool
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, code: int, fails_again: bool, was_noticed: bool
 ) -> None:
     path, seen = Path("app/graph/walk.py"), list[str]()
     (tmp_path / path).parent.mkdir(parents=True)
@@ -132,7 +132,8 @@ def test_a_fault_is_seen_by_the_tests_and_taken_out_again(
 
     def play(tree: Path, *words: str, timeout: float) -> subprocess.CompletedProcess[str]:
         if "a.py::test" in words:
-            return subprocess.CompletedProcess(words, 0, "", "")
+            is_fault = (tree / path).read_text() == "a <= b"
+            return subprocess.CompletedProcess(words, int(is_fault and fails_again), "", "")
         seen.append((tree / path).read_text())
         return subprocess.CompletedProcess(words, code, "FAILED a.py::test\n" if code else "", "")
 
@@ -156,6 +157,21 @@ def test_a_test_that_fails_without_the_fault_notices_nothing(monkeypatch: pytest
     broken = set[str]()
     assert not try_mutant(tmp_path, Mutant(path, 2, 3, "<="), broken).was_noticed
     assert broken == {"a.py::test"}
+
+
+def test_a_test_that_fails_once_notices_nothing(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    path = Path("app/graph/walk.py")
+    (tmp_path / path).parent.mkdir(parents=True)
+    (tmp_path / path).write_text("a < b")
+
+    def play(tree: Path, *words: str, timeout: float) -> subprocess.CompletedProcess[str]:
+        fails = "--deselect=a.py::test" not in words and "a.py::test" not in words
+        return subprocess.CompletedProcess(words, int(fails), "FAILED a.py::test - no\n" if fails else "", "")
+
+    monkeypatch.setattr(run, "run_in_tree", play)
+    broken = set[str]()
+    assert not try_mutant(tmp_path, Mutant(path, 2, 3, "<="), broken).was_noticed
+    assert broken == {"a.py::test"} and (tmp_path / path).read_text() == "a < b"
 
 
 def test_floors_rise_where_enough_was_tried_and_never_fall() -> None:
