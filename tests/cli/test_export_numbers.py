@@ -14,7 +14,7 @@ from halation.compiler.knobs import Knob, Point
 from halation.export.package.curves import read_slot, write_slot
 from halation.export.package.parts import VariantSamples
 from halation.export.package.sampling import KnobSampler, Sample, Slot
-from halation.export.python.functions.coverage import surfaces_of_pixels
+from halation.export.python.functions.coverage import known_normals, surfaces_of_pixels
 from halation.presets import paths
 
 SIZE = "120x68"
@@ -84,3 +84,14 @@ def test_pixels_that_stand_for_a_mixed_one_are_at_most_two_away() -> None:
             if columns == 2:
                 inside = (slice(5, 7), slice(3, 6)) if turned else (slice(3, 6), slice(5, 7))
                 np.testing.assert_allclose(share[inside], 0.5, atol=1e-6)
+
+
+def test_what_a_pixel_says_of_others_is_less_sure_with_the_square_of_the_way() -> None:
+    """Normals of one direction whose mean has the square 0.5 vary by 12 times what is missing to 1: by 6."""
+    normal, near = np.zeros((7, 7, 3)), np.ones((7, 7, 1))
+    normal[..., 2] = np.sqrt(0.5)
+    y, x = np.mgrid[:7, :7]
+    for way, square in (((-1, -1), 2.0), ((1, 0), 1.0), ((2, -1), 5.0), ((0, 0), 0.0)):
+        known, unsure = known_normals(normal, near, np.stack([x, y], axis=-1) + way)
+        np.testing.assert_allclose(known[3, 3], (0.0, 0.0, 1.0), atol=1e-12)
+        np.testing.assert_allclose(unsure[3, 3], 1e-4 + 6.0 * square, rtol=1e-12)

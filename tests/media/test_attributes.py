@@ -13,6 +13,7 @@ import pytest
 from halation.media import read_layer, read_metadata, write_picture
 from halation.media.color_spaces import describe_color_spaces
 from halation.media.header import read_header
+from halation.media.pictures.open import read_pixel_aspect
 from halation.nodes import Kind
 from halation.render_layers.analysis import analyze_render
 from halation.render_layers.mattes import find_mattes
@@ -141,3 +142,15 @@ for path in options.pop("paths"):
     assert ended.stdout.decode().split() == endings and ended.returncode == 0
     for path in options["paths"]:
         assert read_layer(path, "", Kind.IMAGE, sandbox=UNRESTRICTED).array.shape == (6, 8, 4)
+
+
+@pytest.mark.parametrize(
+    ("orientation", "aspect", "expected"),
+    [(1, None, 1.0), (1, 2.0, 2.0), (4, 16.0, 16.0), (5, 2.0, 0.5), (8, 0.0625, 16.0), (1, 16.5, 1.0), (1, 0.0, 1.0)],
+)
+def test_the_shape_of_pixels_is_that_of_the_upright_picture(orientation, aspect, expected) -> None:
+    spec = oiio.ImageSpec(4, 4, 3, oiio.FLOAT)
+    spec.attribute("Orientation", orientation)
+    if aspect is not None:
+        spec.attribute("PixelAspectRatio", aspect)
+    assert read_pixel_aspect(spec) == expected

@@ -34,7 +34,7 @@ GLSL = {
 """Token of GLSL -> the one that stands in its place."""
 
 COMMUTATIVE = {"add", "multiply", "maximum", "minimum", "hypot", "dist", "gcd", "logical_and", "logical_or",
-               "equal"}  # fmt: skip
+               "equal", "isclose"}  # fmt: skip
 """Functions of numpy and math whose two arguments may change places."""
 
 _TOKEN = re.compile(r"\d+\.\d*(?:[eE][-+]?\d+)?|\.?\d+(?:[eE][-+]?\d+)?|\w+|&&|\|\||[-+*/<>=!]=|<<|>>|\S")
