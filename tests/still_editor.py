@@ -156,3 +156,14 @@ def open_still_editor(
             editor.commands.closing = True
             editor.exports.all = ()  # a render that a test made up has no process that ends
             take_apart(editor)
+
+
+def is_alike(one: object, other: object) -> bool:
+    """True if all is the same but a hundredth of a number: places have whole pixels."""
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(is_alike(one[key], other[key]) for key in one)
+    if isinstance(one, list) and isinstance(other, list):
+        return len(one) == len(other) and all(map(is_alike, one, other))
+    if isinstance(one, float) and isinstance(other, float):
+        return abs(one - other) < 0.01
+    return one == other

@@ -16,7 +16,7 @@ from halation import document
 from halation.graph import Graph, Output, Port
 from halation.nodes import Kind, catalogue
 from imgui_bundle import imgui
-from still_editor import StillEditor, open_still_editor
+from still_editor import StillEditor, is_alike, open_still_editor
 from toy_nodes import Tint
 
 ACTED_ON = ("field ", "name ", "button ", "chip ", "fold ", "key ")
@@ -70,17 +70,6 @@ def act_on_all(still: StillEditor, name: str) -> Iterator[tuple[str, dict[str, o
             still.editor.viewer.picking = ""
             still.select(name)
             still.show("Inspector", 2)
-
-
-def is_alike(one: object, other: object) -> bool:
-    """True if all is the same but a hundredth of a number: places have whole pixels."""
-    if isinstance(one, dict) and isinstance(other, dict):
-        return one.keys() == other.keys() and all(is_alike(one[key], other[key]) for key in one)
-    if isinstance(one, list) and isinstance(other, list):
-        return len(one) == len(other) and all(map(is_alike, one, other))
-    if isinstance(one, float) and isinstance(other, float):
-        return abs(one - other) < 0.01
-    return one == other
 
 
 @pytest.mark.parametrize("name", ["tone_map", "vignette", "tint", "outputs.image"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import pytest
 from halation.authoring.commands import AnimateValues, SetFrameRange
 from halation.editor.matching.window import MatchWindow
+from halation.editor.shared.action import Action
 from halation.editor.theme.palette import DARK
 from halation.editor.theme.style import mix, u32
 from halation.editor.timeline.timeline import Timeline
@@ -139,3 +141,17 @@ def test_names_of_values_are_fainter_than_those_of_nodes(tmp_path: Path) -> None
         still.show("Animation")
         colors = {shape.text: shape.color for shape in still.pane.shapes.list_kinds("text")}
         assert colors["glow"] == u32(DARK.text) and colors["intensity"] == u32(mix(DARK.text, DARK.dim, 0.3))
+
+
+def test_every_action_is_in_the_menus(tmp_path: Path) -> None:
+    """Of all tables of actions in the modules of the editor."""
+    tables = [
+        value
+        for name, module in sorted(sys.modules.items())
+        if name.startswith("halation.editor.")
+        for value in vars(module).values()
+        if isinstance(value, tuple) and value and all(isinstance(action, Action) for action in value)
+    ]
+    with open_still_editor(tmp_path, GRAPH) as still:
+        bound = {action.id for action in still.editor.actions.all}
+        assert len(tables) > 10 and bound == {action.id for table in tables for action in table}
