@@ -21,6 +21,7 @@ from halation.compiler import NULL
 from halation.editor.browser import listing
 from halation.editor.theme.fonts import Fonts
 from halation.editor.theme.palette import PALETTES
+from halation.editor.timeline.timeline import Timeline
 from halation.editor.toolkit.textures import Textures
 from halation.editor.window.assembly import assemble, take_apart
 from halation.editor.window.contexts import Contexts, compose_contexts
@@ -103,6 +104,7 @@ class StillEditor:
         """The panel with a title, made on first use."""
         if title not in self.panels:
             makers = {docked.title: docked.make for docked in DOCKED} | dict(OVERLAYS)
+            makers["Timeline"] = lambda contexts: Timeline(contexts.timeline)
             self.panels[title] = makers[title](self.contexts)  # pyright: ignore[reportArgumentType]
         return self.panels[title]
 
@@ -138,6 +140,7 @@ def open_still_editor(
 ) -> Iterator[StillEditor]:
     """An editor with a graph or a graph file. What it remembers is in a folder of its own there."""
     with open_still(size, at, scale, PALETTES[theme], screen) as pane, pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_DATA_HOME", str(folder / "data"))  # no preset of the user is written
         patch.setattr(BackgroundCache, "get", _make_at_once)
         patch.setattr(listing._FolderReader, "start", listing._FolderReader.run)
         patch.setattr(Textures, "get", lambda textures, key, make: (make(), imgui.ImTextureRef(1))[1])

@@ -105,7 +105,8 @@ def act_on_all(folder: Path, title: str, dialog: str, scale: float, at: tuple[fl
 @pytest.mark.parametrize(
     ("title", "dialog"),
     [("Viewer", ""), ("Log", ""), ("History", ""), ("Renders", ""), ("Animation", ""), ("Preferences", "preferences"),
-     ("Export", "export"), ("Command palette", "palette")],
+     ("Export", "export"), ("Command palette", "palette"), ("Node", "node"),
+     ("Timeline", ""), ("Shortcuts", "shortcuts"), ("About", "about"), ("Problems", "")],
 )  # fmt: skip
 def test_clicks_do_the_same_on_a_larger_interface(tmp_path: Path, title: str, dialog: str) -> None:
     small = act_on_all(tmp_path, title, dialog, 1.0, (20.0, 30.0))

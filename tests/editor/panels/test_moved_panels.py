@@ -34,6 +34,9 @@ from toy_nodes import Lamps, Tint
 
 Screens = Iterator[tuple[str, str]]
 
+CLICKED = "button", "small_button", "checkbox", "radio_button", "invisible_button", "selectable", "drag_float"
+"""Widgets that take clicks."""
+
 UNEVEN = ("Graph", "Graph again", "sheet 0", "sheet 1", "sheet 3", "curves 0", "curves 1", "curves 3", "start")
 """Screens that do not grow evenly: a grid has as many lines as pixels allow, a curve as many points; keys have a margin
 in pixels; and the rows of the start screen are rounded one by one."""
@@ -181,6 +184,9 @@ def show_animation(still: StillEditor) -> Screens:
             curves.fit()
             yield f"{mode} {count}", "Animation"
     yield "History", "History"
+    yield "timeline", "Timeline"
+    session.time.seek(40)
+    yield "timeline later", "Timeline"
 
 
 def show_renders(still: StillEditor) -> Screens:
@@ -243,3 +249,22 @@ def test_everything_grows_with_the_interface(draw, screens) -> None:
     small, large = draw(screens), draw(screens, scale=2.0)
     faults = {name: fault for name in small if (fault := compare(small[name], large[name], 2.0, (0.0, 0.0)))}
     assert faults.keys() <= {*UNEVEN}, faults
+
+
+@pytest.mark.parametrize("screens", [show_typical_nodes, show_values, show_panels, show_animation, show_renders])
+def test_nothing_that_can_be_clicked_lies_half_over_another_or_outside(draw, screens) -> None:
+    """A field may lie on a larger surface, such as the canvas."""
+    faults = list[str]()
+    for name, shapes in draw(screens).items():
+        if name == "compare":  # an open menu lies over the panel
+            continue
+        widgets = [shape for shape in shapes if shape.kind in CLICKED and shape.points[0] != shape.points[1]]
+        boxes = [(*shape.points[0], *shape.points[1], shape.text) for shape in widgets]
+        for index, (left, top, right, bottom, text) in enumerate(boxes):
+            if left < 20.0 - 1.0 or right > 360.0 + 1.0:
+                faults.append(f"{name}: {text} from {left} to {right}")
+            for x0, y0, x1, y1, other in boxes[index + 1 :]:
+                wide, high = min(right, x1) - max(left, x0), min(bottom, y1) - max(top, y0)
+                if min(wide, high) > 1.0 and wide < min(right - left, x1 - x0) - 1.0:
+                    faults.append(f"{name}: {text} and {other} have {wide} x {high} in common")
+    assert not faults, faults[:5]
