@@ -42,6 +42,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Workers have children on Linux. A process without workers runs its tests itself, for whoever debugs them."""
+    config.addinivalue_line("markers", "large: takes hundreds of MiB, so it begins in a small process")
     if hasattr(config, "workerinput") and sys.platform == "linux":
         config.stash[_RUNNER] = ChildRunner(config)
         config.pluginmanager.register(config.stash[_RUNNER])
@@ -126,15 +127,18 @@ class ChildRunner:
         while (order := worker.recv()) is not None:
             item, nextitem = items[order[0]], None if order[1] is None else items[order[1]]
             hook.pytest_runtest_protocol(item=item, nextitem=nextitem)
-            is_last = nextitem is None or self._is_large(0 if nextitem.path != item.path else MARGIN)
+            is_last = nextitem is None or self._ends_before(item, nextitem)
             if is_last:
                 session._setupstate.teardown_exact(None)
             write = hook.pytest_report_to_serializable
             worker.send(([write(config=self._config, report=report) for report in self._reports], is_last))
         session._setupstate.teardown_exact(None)
 
-    def _is_large(self, margin: int) -> bool:
-        """Whether this process has more memory than it should, and that many MiB."""
+    def _ends_before(self, item: pytest.Item, nextitem: pytest.Item) -> bool:
+        """Whether this process has too much memory for the next test: more within a file than for another one."""
+        if nextitem.get_closest_marker("large"):
+            return True
+        margin = 0 if nextitem.path != item.path else MARGIN
         pages = int(Path("/proc/self/statm").read_text().split()[1])
         return pages * os.sysconf("SC_PAGE_SIZE") > 2**20 * (float(self._config.getini("child_memory")) + margin)
 

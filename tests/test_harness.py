@@ -116,6 +116,15 @@ def test_files_run_in_children_that_end_when_they_are_large(suite: Suite, tmp_pa
     assert off == [lit[3]]  # the first child had no time for it
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="this system has no processes that are copies")
+def test_a_large_test_begins_in_a_child_of_its_own(suite: Suite, tmp_path: Path) -> None:
+    large = "@pytest.mark.large\ndef test_large(lamp):\n    assert Path('on').open('a').write(f'{os.getpid()} ')\n"
+    ended = suite(SHARING + large + "def test_after(lamp):\n    test_large(lamp)\n", "-n", "1", "-W", "ignore")
+    assert "5 passed" in ended.stdout, ended.stdout
+    lit, off = ((tmp_path / name).read_text().split() for name in ("on", "off"))
+    assert lit == [lit[0]] * 3 + [lit[3]] * 2 and off == [lit[0], lit[3]]
+
+
 def test_every_test_here_has_a_limit(request: pytest.FixtureRequest) -> None:
     assert float(request.config.getini("timeout")) == 300.0
     assert request.config.pluginmanager.hasplugin("timeout") and request.config.pluginmanager.hasplugin("time_limits")

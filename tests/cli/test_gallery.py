@@ -145,6 +145,7 @@ def test_the_sheet_of_time_is_current(renderer: Renderer, tmp_path: Path, monkey
     compare("time", gallery.make_time_sheet(renderer), tmp_path)
 
 
+@pytest.mark.large
 def test_the_sheet_of_nodes_is_current(renderer: Renderer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """It may lack nodes that are newer. Some pictures are made again and compared."""
     ids, picture_of = tuple(described(IMAGES / "nodes.jpg")), gallery.render_node

@@ -190,6 +190,7 @@ def refused(node) -> str:
     return ""
 
 
+@pytest.mark.large
 def test_the_manual_says_what_may_read_anywhere():
     manual = Path(__file__).parents[2] / "docs" / "running.md"
     rows = [line for line in manual.read_text().splitlines() if line.startswith("| ")]

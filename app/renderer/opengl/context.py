@@ -23,8 +23,9 @@ def open_standalone(driver: DriverSettings) -> OpenGLDevice:
     wait_for_driver()
     with driver.apply():
         context = _create_context()
+        device = OpenGLDevice(context, describe_target(context))
         weakref.finalize(context, context.mglo.release).atexit = False
-        return OpenGLDevice(context, describe_target(context))
+        return device
 
 
 def open_current() -> OpenGLDevice:
