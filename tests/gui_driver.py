@@ -79,7 +79,11 @@ class Ui:
         self.ctx.yield_(frames)
 
     def until(self, question: Callable[[], bool], seconds: float = PATIENCE) -> None:
-        """Wait for something to become true."""
+        """Wait for something to become true, and for the frame that shows it: rows may move then."""
+        self._wait_for(question, seconds)
+        self.wait(1)
+
+    def _wait_for(self, question: Callable[[], bool], seconds: float = PATIENCE) -> None:
         began = time.monotonic()
         while not question():
             waited = time.monotonic() - began
@@ -98,7 +102,7 @@ class Ui:
         """What the window answers in its own thread, the only one that may touch pixels."""
         answers: list[T] = []
         self._asked.append(lambda: answers.append(question()))
-        self.until(lambda: bool(answers))
+        self._wait_for(lambda: bool(answers))
         return answers[0]
 
     def answer(self) -> None:
