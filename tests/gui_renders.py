@@ -23,12 +23,10 @@ def make_render(place: Path, state: RenderState, done: int = 0, total: int = 24,
     return made
 
 
-def renders(ui: Ui) -> Iterator[str]:
-    """The form, and renders in every state."""
-    ui.show_panel("Renders")
-    yield "renders_form"
+def list_renders() -> tuple[QueuedRender, ...]:
+    """Renders in every state."""
     folder = Path("/pictures/shots/0120")
-    ui.editor.exports.all = (
+    return (
         make_render(folder / "comp_v012.####.exr", "done", 24, notes=("image: clipped to 16 bit",)),
         make_render(folder / "comp_v013.png", "failed", total=1, sentence="/pictures/shots/0120: no such folder"),
         make_render(folder / "a_very_long_name_of_a_picture_that_does_not_end_v014.####.exr", "cancelled", 5),
@@ -36,6 +34,13 @@ def renders(ui: Ui) -> Iterator[str]:
         make_render(folder / "comp_v016.####.exr", "waiting"),
         make_render(folder / "comp_v017.####.exr", "waiting"),
     )
+
+
+def renders(ui: Ui) -> Iterator[str]:
+    """The form, and renders in every state."""
+    ui.show_panel("Renders")
+    yield "renders_form"
+    ui.editor.exports.all = list_renders()
     ui.wait(3)
     yield "renders"
     ui.editor.exports.all = ()

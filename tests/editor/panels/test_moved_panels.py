@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 from drawn_shapes import Shape
-from gui_renders import make_render
+from gui_renders import list_renders
 from gui_screens import SAMPLES, write_many_things
 from halation.authoring.commands import (
     AddComment,
@@ -191,15 +191,7 @@ def show_animation(still: StillEditor) -> Screens:
 
 def show_renders(still: StillEditor) -> Screens:
     """Renders in every state, and the form for many files."""
-    folder = Path("/pictures/shots/0120")
-    still.editor.exports.all = (
-        make_render(folder / "comp_v012.####.exr", "done", 24, notes=("image: clipped to 16 bit",)),
-        make_render(folder / "comp_v013.png", "failed", total=1, sentence="/pictures/shots/0120: no such folder"),
-        make_render(folder / "a_very_long_name_of_a_picture_that_does_not_end_v014.####.exr", "cancelled", 5),
-        make_render(folder / "comp_v015.####.exr", "running", 9, frame=10, node="bloom", passes=(3, 8)),
-        make_render(folder / "comp_v016.####.exr", "waiting"),
-        make_render(folder / "comp_v017.####.exr", "waiting"),
-    )
+    still.editor.exports.all = list_renders()
     yield "queue", "Renders"
     still.click("Renders", "notes 3")
     yield "notes", "Renders"
