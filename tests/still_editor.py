@@ -6,6 +6,7 @@ and what a click in them does to the document.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -23,15 +24,19 @@ from halation.editor.theme.fonts import Fonts
 from halation.editor.theme.palette import PALETTES
 from halation.editor.timeline.timeline import Timeline
 from halation.editor.toolkit.textures import Textures
+from halation.editor.viewer.wanted import list_wanted_ports, list_whole_sides
 from halation.editor.window.assembly import assemble, take_apart
 from halation.editor.window.contexts import Contexts, compose_contexts
 from halation.editor.window.editor import Editor
 from halation.editor.window.panels import DOCKED, OVERLAYS, Panel
-from halation.graph import Graph
+from halation.graph import Graph, Port
 from halation.resources.sandbox import UNRESTRICTED
 from imgui_bundle import imgui
 from null_device import NullDevice
 from still_window import StillWindow, open_still
+
+PATIENCE = 60.0
+"""Seconds for files that threads read."""
 
 
 @dataclass
@@ -52,6 +57,23 @@ class StillEditor:
         body = self.find(title).draw
         self.pane.draw(self._frame(body), frames)
         return [*self.pane.shapes.shapes, *self.pane.widgets]
+
+    def compute(self) -> None:
+        """Make the pictures that panels want: they have sizes, and pixels that are all black."""
+        context, preview, session = self.contexts.viewer, self.editor.preview, self.editor.session
+        deadline = time.monotonic() + PATIENCE
+        while True:
+            wanted, scale = list_wanted_ports(context)
+            ports = {name: Port("/".join((*session.place, port.node)), port.socket) for name, port in wanted.items()}
+            preview.want(
+                session.root, ports, bindings=session.bindings, scale=scale, frame=session.time.frame,
+                whole=list_whole_sides(context),
+            )  # fmt: skip
+            preview.work(1.0)
+            if all(preview.find_whole_image(name) or preview.fault(name) for name in ports) and not preview.busy:
+                return
+            assert time.monotonic() < deadline, "a file is not read"
+            time.sleep(0.005)
 
     def click(self, title: str, place: str, button: int = 0, part: Point = (0.5, 0.5)) -> None:
         """Click at a part of a place of a panel, by the place's name."""

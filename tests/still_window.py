@@ -6,6 +6,7 @@ down as `drawn_shapes` does; widgets are written down with their labels and plac
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -26,6 +27,21 @@ WIDGETS = (
 )  # fmt: skip
 """Functions of the library that draw a widget, and leave its place as that of the last item."""
 
+
+STACKS = {
+    "push_font": "pop_font", "push_style_color": "pop_style_color", "push_style_var": "pop_style_var",
+    "push_id": "pop_id", "push_item_flag": "pop_item_flag", "push_text_wrap_pos": "pop_text_wrap_pos",
+    "begin_disabled": "end_disabled", "begin_group": "end_group", "begin_child": "end_child", "begin": "end",
+    "begin_popup": "end_popup", "begin_popup_context_item": "end_popup", "begin_menu": "end_menu",
+    "begin_combo": "end_combo", "begin_table": "end_table", "begin_tooltip": "end_tooltip",
+    "indent": "unindent",
+}  # fmt: skip
+"""What a panel begins or sets, and the call that ends it: of each there must be as many in a frame."""
+
+ENDED_IF_OPEN = (
+    "begin_popup", "begin_popup_context_item", "begin_menu", "begin_combo", "begin_table", "begin_tooltip",
+)  # fmt: skip
+"""What has an end only where its beginning says that it is open."""
 
 _NO_HINTS = 1
 """What FreeType's loader in the library calls NoHinting."""
@@ -67,6 +83,7 @@ class StillWindow:
         self.shapes = SeenShapes()
         self.widgets: list[Shape] = []
         self.font: imgui.ImFont | None = None
+        self._open = Counter[str]()
 
     def draw(self, body: Callable[[], Any], frames: int = 1) -> Any:
         """Draw some frames; what the body returns in the last one."""
@@ -78,9 +95,14 @@ class StillWindow:
             imgui.set_next_window_pos(self.at)
             imgui.set_next_window_size(self.size)
             imgui.begin("pane", None, int(imgui.WindowFlags_.no_title_bar) | int(imgui.WindowFlags_.no_saved_settings))
+            self._open.clear()  # the pane's own beginning is not the panel's
             answer = body()
+            open_parts = {name: count for name, count in self._open.items() if count}
             imgui.end()
             imgui.end_frame()
+            assert not open_parts, f"what follows this panel would be drawn otherwise: {open_parts}"
+            clips = [len(self.shapes.list_kinds(kind)) for kind in ("clip", "unclip")]
+            assert clips[0] == clips[1], "as many clips end as begin"
         return answer
 
     def point(self, at: Point) -> None:
@@ -125,8 +147,25 @@ class StillWindow:
 
         return draw
 
+    def _count(self, name: str, call: Callable[..., Any], end: str, by: int) -> Callable[..., Any]:
+        """A call that is counted where it begins something, or ends it."""
+
+        def count(*words: Any, **options: Any) -> Any:
+            answer = call(*words, **options)
+            if name in ("indent", "unindent"):
+                self._open[end] += by * round(1000.0 * sum(words))
+            elif name not in ENDED_IF_OPEN or answer:
+                self._open[end] += by * (words[0] if words and name in ("pop_style_color", "pop_style_var") else 1)
+            return answer
+
+        return count
+
     def watch(self, patch: pytest.MonkeyPatch) -> None:
         """Write down what is drawn from now on."""
+        for name, end in STACKS.items():
+            patch.setattr(imgui, name, self._count(name, getattr(imgui, name), end, 1))
+        for name in {*STACKS.values()}:
+            patch.setattr(imgui, name, self._count(name, getattr(imgui, name), name, -1))
         for name in WIDGETS:
             patch.setattr(imgui, name, self._wrap(name, getattr(imgui, name)))
         for name in ("get_window_draw_list", "get_foreground_draw_list", "get_background_draw_list"):

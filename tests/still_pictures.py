@@ -1,0 +1,213 @@
+"""Screens of a still editor that need pictures, files or clicks: each function yields a screen's name and its panel."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from halation.authoring.commands import AnimateValues, ReplaceGraph, SetFrameRange
+from halation.authoring.preview.pass_pictures import PassPicture
+from halation.editor.tutorials.course import COURSE
+from halation.export.surface_picture import SurfacePicture
+from halation.graph import Expression, Graph, Input, Key, Keys, Output, Port
+from halation.nodes import Kind, catalogue
+from halation.nodes.input.read_image import ReadImage
+from imgui_bundle import imgui
+from still_editor import StillEditor
+from still_screens import Screens
+
+RENDER = Path(__file__).parent / "data/blender45_multilayer.exr"
+"""A render of Blender with many layers, a camera and a cryptomatte with names."""
+
+HANDLED = (
+    "bilateral_blur", "directional_blur", "radial_blur", "chromatic_aberration", "corner_pin", "crop", "kaleidoscope",
+    "lens_distortion", "spline_warp", "transform", "paint", "ramp", "roto", "text", "depth_of_field",
+    "deferred_lighting", "feedback", "ripple",
+)  # fmt: skip
+"""Nodes that are changed in the picture, of every kind of handle."""
+
+_ANY_POPUP = int(imgui.PopupFlags_.any_popup)
+
+
+def make_graph(id: str) -> Graph:
+    """A node, and noise or its luminance in all of its inputs that take that."""
+    graph = Graph().add("node", catalogue()[id]())
+    for name in ("noise", "luminance"):
+        graph = graph.add(name, catalogue()[name]())
+    graph = graph.connect(Port("noise", "out"), Port("luminance", "image"))
+    sources = {Kind.IMAGE: Port("noise", "out"), Kind.FIELD: Port("luminance", "out")}
+    for name, socket in catalogue()[id].inputs.items():
+        if source := sources.get(socket.kind):
+            graph = graph.connect(source, Port("node", name))
+    return graph
+
+
+def show_handles(still: StillEditor) -> Screens:
+    """What lies on the picture while a node is selected."""
+    session = still.editor.session
+    for id in HANDLED:
+        session.apply(ReplaceGraph("Start", make_graph(id)))
+        still.select("node")
+        session.views.show(Port("node", next(iter(catalogue()[id].outputs))))
+        still.show("Viewer", 2)
+        still.compute()
+        yield id, "Viewer"
+
+
+def show_viewer(still: StillEditor) -> Screens:
+    """Channels, comparing, the table, and what lies over the picture."""
+    session, viewer = still.editor.session, still.editor.viewer
+    session.views.show(Port("outputs", "image"))
+    still.show("Viewer", 2)
+    still.compute()
+    for channels in ("color", "red", "alpha", "luminance", "false color"):
+        viewer.channels = channels
+        yield channels, "Viewer"
+    viewer.channels = "color"
+    session.views.show(Port("grade", "out"), "B")
+    for mode in ("wipe", "difference", "toggle", "beside"):
+        viewer.compare = mode  # pyright: ignore[reportAttributeAccessIssue]
+        still.show("Viewer", 2)
+        still.compute()
+        yield mode, "Viewer"
+    viewer.compare, viewer.exposure, viewer.warn_clipping = "off", 2.0, True
+    yield "changed", "Viewer"
+    viewer.exposure, viewer.warn_clipping, viewer.table = 0.0, False, True
+    viewer.region, viewer.measured = (0.2, 0.2, 0.6, 0.7), (0.3, 0.3, 0.5, 0.5)
+    viewer.markers = ((0.25, 0.5), (0.75, 0.25))
+    still.show("Viewer", 2)
+    still.compute()
+    yield "table", "Viewer"
+    viewer.table, viewer.region, viewer.measured, viewer.markers = False, None, None, ()
+    viewer.paused = True
+    yield "paused", "Viewer"
+    viewer.paused = False
+    for scopes in (("histogram", "waveform", "parade", "vectorscope"), ("waveform",), ()):
+        viewer.scopes = {*scopes}
+        yield f"{len(scopes)} scopes", "Scopes"
+    session.views.show(Port("outputs", "lights"))
+    still.show("Viewer", 2)
+    still.compute()
+    yield "field", "Viewer"
+
+
+def show_files(still: StillEditor) -> Screens:
+    """Nodes that read a render, and inputs and outputs."""
+    session = still.editor.session
+    graph = Graph().add_input("beauty", Input(Kind.IMAGE, 4, file=str(RENDER), doc="The picture to work on"))
+    graph = graph.add_input("shot", Input(Kind.IMAGE, 4, file="shot.####.exr"))
+    graph = graph.add_input("amount", Input(Kind.NUMBER, 1, default=0.5)).add_output("image", Output(Kind.IMAGE, 4))
+    for id, name in (("read", "read_render"), ("mattes", "cryptomatte"), ("several", "cryptomatte")):
+        node = catalogue()[name]
+        graph = graph.add(id, node(**{next(at for at in ("path", "file") if at in node.values): str(RENDER)}))
+    graph = graph.add("picture", ReadImage(path=str(RENDER)))
+    graph = graph.set(Port("several", "pick"), "*").connect(Port("read", "color"), Port("outputs", "image"))
+    session.apply(ReplaceGraph("Start", graph))
+    for id in ("read", "mattes", "several", "picture", "inputs.beauty", "inputs.shot", "inputs.amount"):
+        still.select(id)
+        yield id, "Inspector"
+    still.select("outputs.image")
+    yield "output", "Inspector"
+    still.select("mattes")
+    still.show("Inspector")
+    still.click("Inspector", next(place for place in still.places if place.startswith("name mattes.pick ")))
+    yield "picked", "Inspector"
+    still.select("read")
+    still.show("Inspector")
+    for fold in [place for place in still.places if place.startswith("more ")]:
+        still.click("Inspector", fold)
+    yield "folds", "Inspector"
+
+
+def show_passes(still: StillEditor) -> Screens:
+    """Passes with short and long texts; one is marked."""
+    codes = np.zeros((90, 160, 3), np.uint8)
+    made = (
+        PassPicture(0, ("plate",), (), (), "1920 x 1080, 4 channels", SurfacePicture(codes, None)),
+        PassPicture(1, ("grade",), ("grade",), ("plate",), "1920 x 1080 rgba16f", SurfacePicture(codes, None)),
+        PassPicture(
+            2, ("bloom", "vignette", "a_very_long_name"), ("downsample", "vignette"), ("1", "plate"),
+            "960 x 540 r11g11b10f", SurfacePicture(codes.transpose(1, 0, 2), (0.0, 4.0)),
+        ),
+    )  # fmt: skip
+    passes = still.editor.passes
+    passes.passes, passes.seconds, passes.marked = list(made), [0.001, 0.0025], "vignette"
+    passes.revision += 1
+    yield "passes", "Passes"
+    passes.fault, passes.passes = "the graph cannot be rendered", []
+    yield "no passes", "Passes"
+
+
+def show_lessons(still: StillEditor) -> Screens:
+    """The card of a tutorial, beside a widget and above one; one that is read only, and the last."""
+    progress = still.contexts.tutorials.progress
+    for lesson in (COURSE[0], COURSE[2]):
+        progress.begin(lesson)
+        tasks = [index for index, step in enumerate(lesson.steps) if step.solution]
+        for index in sorted({0, 1, tasks[0], len(lesson.steps) - 1}):
+            progress.go(index - progress.index)
+            still.show("Tutorial", 1)
+            step = lesson.steps[index]
+            (left, top), scale = still.pane.at, still.editor.store.current.ui_scale
+            for x, y in ((100.0, 270.0), (20.0, 700.0)):
+                low, high = (left + x * scale, top + y * scale), (left + (x + 100.0) * scale, top + (y + 30.0) * scale)
+                progress.widgets = {step.widget: (*low, *high)}
+                yield f"{lesson.id} {index} {y:.0f}", "Tutorial"
+        progress.begin(None)
+
+
+def show_opened_fields(still: StillEditor) -> Screens:
+    """Menus, lists and pickers of fields that a click opens."""
+    yield from _open(still, [("Inspector", name) for name in ("bloom", "grade", "tone_map", "", "inputs.amount")])
+
+
+def show_opened_panels(still: StillEditor) -> Screens:
+    """Menus and lists of other panels that a click opens, one of every kind."""
+    titles = "Viewer", "Graph", "Animation", "Timeline", "Scopes", "Log", "Code"
+    yield from _open(still, [(title, "bloom") for title in titles])
+
+
+def _open(still: StillEditor, places: Sequence[tuple[str, str]]) -> Screens:
+    session = still.editor.session
+    session.apply(SetFrameRange(1, 48))
+    intensity, knee = Port("bloom", "intensity"), Port("bloom", "knee")
+    moves = {intensity: Keys((Key(1, 0.2), Key(12, 0.9))), knee: Expression("0.5 + 0.1 * sin(time)")}
+    session.apply(AnimateValues(moves, "Animate"))
+    session.views.show(Port("outputs", "image"))
+    still.show("Viewer", 2)
+    still.compute()
+    for title, name in places:
+        still.select(*filter(None, (name,)))
+        still.show(title)
+        seen = set[str]()
+        for place in sorted(still.places):
+            kind = " ".join(place.split()[: 2 if place.startswith("button") else 1])
+            if kind in seen and not (title == "Inspector" and kind == "field"):
+                continue
+            seen.add(kind)
+            acts = ((0, 0.5), (0, 0.03), (1, 0.5))
+            for button, part in acts[2:] if (title, name) == ("Inspector", "bloom") else acts:
+                before = session.root
+                if place in still.places:
+                    still.click(title, place, button, (part, 0.5))
+                    if imgui.is_popup_open("", _ANY_POPUP) or imgui.get_io().want_text_input:
+                        yield f"{title} {name} {place} {button} {part}", title
+                still.calm(title)
+                while session.root is not before and session.history.steps:
+                    session.undo()
+                still.select(*filter(None, (name,)))
+                still.show(title, 2)
+
+
+def show_search(still: StillEditor) -> Screens:
+    """The search for nodes in the graph: all, and some."""
+    still.show("Graph")
+    still.pane.point(still.find_point("Graph", (0.1, 0.2)) if "Graph" in still.places else still.pane.at)
+    still.show("Graph", 1)
+    still.editor.canvas.searching = True
+    yield "Graph search", "Graph"
+    for words in ("blur", "xyz"):
+        imgui.get_io().add_input_characters_utf8(words)
+        yield f"Graph search {words}", "Graph"
+    still.calm("Graph")
