@@ -99,8 +99,7 @@ def show_files(still: StillEditor) -> Screens:
     graph = graph.add_input("shot", Input(Kind.IMAGE, 4, file="shot.####.exr"))
     graph = graph.add_input("amount", Input(Kind.NUMBER, 1, default=0.5)).add_output("image", Output(Kind.IMAGE, 4))
     for id, name in (("read", "read_render"), ("mattes", "cryptomatte"), ("several", "cryptomatte")):
-        node = catalogue()[name]
-        graph = graph.add(id, node(**{next(at for at in ("path", "file") if at in node.values): str(RENDER)}))
+        graph = graph.add(id, catalogue()[name]()).set(Port(id, "path"), str(RENDER))
     graph = graph.add("picture", ReadImage(path=str(RENDER)))
     graph = graph.set(Port("several", "pick"), "*").connect(Port("read", "color"), Port("outputs", "image"))
     session.apply(ReplaceGraph("Start", graph))

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -43,12 +44,53 @@ ENDED_IF_OPEN = (
 )  # fmt: skip
 """What has an end only where its beginning says that it is open."""
 
+Rect = tuple[float, float, float, float]
+
 _NO_HINTS = 1
 """What FreeType's loader in the library calls NoHinting."""
 
 
+def overlap(first: Rect, second: Rect) -> Rect:
+    """What two boxes have in common; right is left of left where they have nothing."""
+    low = max(first[0], second[0]), max(first[1], second[1])
+    return (*low, min(first[2], second[2]), min(first[3], second[3]))
+
+
+_draw_list_of_window = imgui.get_window_draw_list
+
+
+@dataclass
 class SeenShapes(DrawnShapes):
-    """Writes down what more than one panel draws."""
+    """Writes down what more than one panel draws, and where each shape and text can be seen."""
+
+    sights: list[Rect] = field(default_factory=list[Rect])
+    """The clip of each shape; of a text its own box, within its clip."""
+    _clips: list[Rect] = field(default_factory=list[Rect])
+
+    def clear(self) -> None:
+        self.shapes.clear()
+        self.sights.clear()
+
+    def push_clip_rect(self, low: Any, high: Any, inside: bool) -> None:
+        super().push_clip_rect(low, high, inside)
+        self._clips.append((float(low[0]), float(low[1]), float(high[0]), float(high[1])))
+
+    def pop_clip_rect(self) -> None:
+        super().pop_clip_rect()
+        self._clips.pop()
+
+    def _add(self, kind: str, points: tuple[Any, ...], lengths: tuple[float, ...], color: int, text: str = "") -> None:
+        super()._add(kind, points, lengths, color, text)
+        lines = _draw_list_of_window()
+        sight = (*lines.get_clip_rect_min(), *lines.get_clip_rect_max())
+        for box in self._clips[-1:]:
+            sight = overlap(sight, box)
+        if kind == "text":
+            (x, y), (size, wrap) = self.shapes[-1].points[0], self.shapes[-1].lengths
+            part = size / imgui.get_font_size() if size != self.em else 1.0
+            room = imgui.calc_text_size(text, wrap_width=wrap / part if wrap else -1.0)
+            sight = overlap(sight, (x, y, x + room.x * part, y + room.y * part))
+        self.sights.append(sight)
 
     def add_image(self, picture: Any, low: Any, high: Any, *words: Any) -> None:
         self._add("image", (low, high), (), 0)
@@ -75,6 +117,34 @@ class SeenShapes(DrawnShapes):
         self._add("stroke", (), (width,), color, str(flags))
 
 
+TEXTS = "text", "text_unformatted", "text_disabled", "text_wrapped", "text_colored"
+"""Widgets that are nothing but text."""
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """What one frame has drawn."""
+
+    shapes: tuple[Shape, ...]
+    sights: tuple[Rect, ...]
+    widgets: tuple[Shape, ...]
+
+    @property
+    def all(self) -> list[Shape]:
+        return [*self.shapes, *self.widgets]
+
+    def list_boxes(self, *kinds: str) -> list[Rect]:
+        """The boxes of rectangles and of widgets of some kinds."""
+        return [(*shape.points[0], *shape.points[1]) for shape in self.all if shape.kind in kinds]
+
+    def list_texts(self) -> list[tuple[Rect, str]]:
+        """The boxes of all texts that can be seen, and their words."""
+        pairs = zip(self.shapes, self.sights, strict=True)
+        drawn = [(sight, shape.text) for shape, sight in pairs if shape.kind == "text"]
+        drawn += [((*shape.points[0], *shape.points[1]), shape.text) for shape in self.widgets if shape.kind in TEXTS]
+        return [(box, text) for box, text in drawn if box[2] - box[0] > 1.0 and box[3] - box[1] > 1.0]
+
+
 class StillWindow:
     """A pane of a size at a place, in which something is drawn frame by frame."""
 
@@ -89,7 +159,7 @@ class StillWindow:
         """Draw some frames; what the body returns in the last one."""
         answer = None
         for _ in range(frames):
-            self.shapes.shapes.clear()
+            self.shapes.clear()
             self.widgets.clear()
             imgui.new_frame()
             imgui.set_next_window_pos(self.at)
@@ -104,6 +174,10 @@ class StillWindow:
             clips = [len(self.shapes.list_kinds(kind)) for kind in ("clip", "unclip")]
             assert clips[0] == clips[1], "as many clips end as begin"
         return answer
+
+    def copy(self) -> Drawing:
+        """What the last frame has drawn."""
+        return Drawing((*self.shapes.shapes,), (*self.shapes.sights,), (*self.widgets,))
 
     def point(self, at: Point) -> None:
         """Move the mouse."""

@@ -6,15 +6,8 @@ in place of a difference or a length in pixels, breaks one of these. Nothing her
 
 from __future__ import annotations
 
-import shutil
-from collections.abc import Callable
-from functools import cache
-from typing import Any
-
 import pytest
 from drawn_shapes import Shape
-from gui_screens import write_many_things
-from still_editor import StillEditor, open_still_editor
 from still_pictures import (
     show_files,
     show_handles,
@@ -26,7 +19,6 @@ from still_pictures import (
     show_viewer,
 )
 from still_screens import (
-    Screens,
     show_animation,
     show_dialogs,
     show_more_dialogs,
@@ -52,21 +44,6 @@ MOVED = (
 """What lies in its panel; dialogs lie in the middle of the screen."""
 
 
-@pytest.fixture(scope="module")
-def draw(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., dict[str, list[Shape]]]:
-    folder = tmp_path_factory.mktemp("still")
-    path = write_many_things(folder)
-
-    @cache
-    def draw(screens: Callable[[StillEditor], Screens], **options: Any) -> dict[str, list[Shape]]:
-        """What each screen draws, on a screen with room for all that opens."""
-        shutil.rmtree(folder / "state", ignore_errors=True)  # the files and folders that were opened last
-        with open_still_editor(folder, path, screen=(3000.0, 3000.0), **options) as still:
-            return {name: still.show(title, 4) for name, title in screens(still)}
-
-    return draw
-
-
 def compare(first: list[Shape], second: list[Shape], factor: float, shift: tuple[float, float]) -> str:
     """The first thing that is not where it should be."""
     slack = 1.0 + factor if factor != 1.0 else 0.01  # places are rounded to whole pixels
@@ -85,13 +62,15 @@ def compare(first: list[Shape], second: list[Shape], factor: float, shift: tuple
 @pytest.mark.parametrize("screens", MOVED)
 def test_a_panel_that_is_moved_draws_the_same(draw, screens) -> None:
     here, there = draw(screens), draw(screens, at=(220.0, 130.0))
-    assert not {name: fault for name in here if (fault := compare(here[name], there[name], 1.0, (200.0, 100.0)))}
+    assert not {
+        name: fault for name in here if (fault := compare(here[name].all, there[name].all, 1.0, (200.0, 100.0)))
+    }
 
 
 @pytest.mark.parametrize("screens", [*MOVED, show_dialogs, show_more_dialogs])
 def test_everything_grows_with_the_interface(draw, screens) -> None:
     small, large = draw(screens), draw(screens, scale=2.0)
-    faults = {name: fault for name in small if (fault := compare(small[name], large[name], 2.0, (0.0, 0.0)))}
+    faults = {name: fault for name in small if (fault := compare(small[name].all, large[name].all, 2.0, (0.0, 0.0)))}
     faults = {name: fault for name, fault in faults.items() if not name.startswith(UNEVEN)}
     assert not faults
 
@@ -100,10 +79,10 @@ def test_everything_grows_with_the_interface(draw, screens) -> None:
 def test_nothing_that_can_be_clicked_lies_half_over_another_or_outside(draw, screens) -> None:
     """A field may lie on a larger surface, such as the canvas."""
     faults = list[str]()
-    for name, shapes in draw(screens).items():
+    for name, drawing in draw(screens).items():
         if name == "compare":  # an open menu lies over the panel
             continue
-        widgets = [shape for shape in shapes if shape.kind in CLICKED and shape.points[0] != shape.points[1]]
+        widgets = [shape for shape in drawing.widgets if shape.kind in CLICKED and shape.points[0] != shape.points[1]]
         boxes = [(*shape.points[0], *shape.points[1], shape.text) for shape in widgets]
         for index, (left, top, right, bottom, text) in enumerate(boxes):
             if left < 20.0 - 1.0 or right > 360.0 + 1.0:
