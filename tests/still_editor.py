@@ -82,6 +82,19 @@ class StillEditor:
         self.pane.click((x, y, x, y), self._frame(self.find(title).draw), button)
         self.show(title, 2)
 
+    def type(self, title: str, place: str, text: str, part: Point = (0.5, 0.5)) -> None:
+        """Click in a field, replace its text, and press Enter."""
+        self.click(title, place, part=part)
+        body, io = self._frame(self.find(title).draw), imgui.get_io()
+        for is_down in (True, False):
+            for key in (imgui.Key.mod_ctrl, imgui.Key.a):
+                io.add_key_event(key, is_down)
+            self.pane.draw(body, 2)
+        io.add_input_characters_utf8(text)
+        self.pane.draw(body, 2)
+        self.pane.press(imgui.Key.enter, body)
+        self.show(title, 2)
+
     def drag(self, title: str, place: str, start: Point, end: Point) -> None:
         """Press at a part of a place and let go at another one."""
         body, io = self._frame(self.find(title).draw), imgui.get_io()
