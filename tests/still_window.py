@@ -59,17 +59,27 @@ def overlap(first: Rect, second: Rect) -> Rect:
 _draw_list_of_window = imgui.get_window_draw_list
 
 
+def find_clip() -> Rect:
+    """Where the window of the library shows what is drawn now."""
+    lines = _draw_list_of_window()
+    low, high = lines.get_clip_rect_min(), lines.get_clip_rect_max()
+    return low.x, low.y, high.x, high.y
+
+
 @dataclass
 class SeenShapes(DrawnShapes):
     """Writes down what more than one panel draws, and where each shape and text can be seen."""
 
-    sights: list[Rect] = field(default_factory=list[Rect])
-    """The clip of each shape; of a text its own box, within its clip."""
+    clips: list[Rect] = field(default_factory=list[Rect])
+    """Where each shape can be seen."""
+    boxes: list[Rect] = field(default_factory=list[Rect])
+    """The box of each text."""
     _clips: list[Rect] = field(default_factory=list[Rect])
 
     def clear(self) -> None:
         self.shapes.clear()
-        self.sights.clear()
+        self.clips.clear()
+        self.boxes.clear()
 
     def push_clip_rect(self, low: Any, high: Any, inside: bool) -> None:
         super().push_clip_rect(low, high, inside)
@@ -81,16 +91,17 @@ class SeenShapes(DrawnShapes):
 
     def _add(self, kind: str, points: tuple[Any, ...], lengths: tuple[float, ...], color: int, text: str = "") -> None:
         super()._add(kind, points, lengths, color, text)
-        lines = _draw_list_of_window()
-        sight = (*lines.get_clip_rect_min(), *lines.get_clip_rect_max())
+        clip = find_clip()
         for box in self._clips[-1:]:
-            sight = overlap(sight, box)
+            clip = overlap(clip, box)
+        self.clips.append(clip)
+        (x, y), box = self.shapes[-1].points[0] if points else (0.0, 0.0), (0.0,) * 4
         if kind == "text":
-            (x, y), (size, wrap) = self.shapes[-1].points[0], self.shapes[-1].lengths
+            size, wrap = self.shapes[-1].lengths
             part = size / imgui.get_font_size() if size != self.em else 1.0
             room = imgui.calc_text_size(text, wrap_width=wrap / part if wrap else -1.0)
-            sight = overlap(sight, (x, y, x + room.x * part, y + room.y * part))
-        self.sights.append(sight)
+            box = x, y, x + room.x * part, y + room.y * part
+        self.boxes.append(box)
 
     def add_image(self, picture: Any, low: Any, high: Any, *words: Any) -> None:
         self._add("image", (low, high), (), 0)
@@ -122,12 +133,27 @@ TEXTS = "text", "text_unformatted", "text_disabled", "text_wrapped", "text_color
 
 
 @dataclass(frozen=True)
+class SeenText:
+    """A text in a frame: its words, its box, and where it could be seen."""
+
+    words: str
+    box: Rect
+    clip: Rect
+
+    @property
+    def sight(self) -> Rect:
+        return overlap(self.box, self.clip)
+
+
+@dataclass(frozen=True)
 class Drawing:
     """What one frame has drawn."""
 
     shapes: tuple[Shape, ...]
-    sights: tuple[Rect, ...]
     widgets: tuple[Shape, ...]
+    drawn_texts: tuple[SeenText, ...]
+    texts: tuple[SeenText, ...]
+    """With those of widgets."""
 
     @property
     def all(self) -> list[Shape]:
@@ -136,13 +162,6 @@ class Drawing:
     def list_boxes(self, *kinds: str) -> list[Rect]:
         """The boxes of rectangles and of widgets of some kinds."""
         return [(*shape.points[0], *shape.points[1]) for shape in self.all if shape.kind in kinds]
-
-    def list_texts(self) -> list[tuple[Rect, str]]:
-        """The boxes of all texts that can be seen, and their words."""
-        pairs = zip(self.shapes, self.sights, strict=True)
-        drawn = [(sight, shape.text) for shape, sight in pairs if shape.kind == "text"]
-        drawn += [((*shape.points[0], *shape.points[1]), shape.text) for shape in self.widgets if shape.kind in TEXTS]
-        return [(box, text) for box, text in drawn if box[2] - box[0] > 1.0 and box[3] - box[1] > 1.0]
 
 
 class StillWindow:
@@ -153,6 +172,7 @@ class StillWindow:
         self.shapes = SeenShapes()
         self.widgets: list[Shape] = []
         self.font: imgui.ImFont | None = None
+        self._widget_clips: list[Rect] = []
         self._open = Counter[str]()
 
     def draw(self, body: Callable[[], Any], frames: int = 1) -> Any:
@@ -161,6 +181,7 @@ class StillWindow:
         for _ in range(frames):
             self.shapes.clear()
             self.widgets.clear()
+            self._widget_clips.clear()
             imgui.new_frame()
             imgui.set_next_window_pos(self.at)
             imgui.set_next_window_size(self.size)
@@ -177,7 +198,14 @@ class StillWindow:
 
     def copy(self) -> Drawing:
         """What the last frame has drawn."""
-        return Drawing((*self.shapes.shapes,), (*self.shapes.sights,), (*self.widgets,))
+        seen = zip(self.shapes.shapes, self.shapes.boxes, self.shapes.clips, strict=True)
+        drawn = [SeenText(shape.text, box, clip) for shape, box, clip in seen if shape.kind == "text"]
+        widgets = [
+            SeenText(shape.text, (*shape.points[0], *shape.points[1]), clip)
+            for shape, clip in zip(self.widgets, self._widget_clips, strict=True)
+            if shape.kind in TEXTS
+        ]
+        return Drawing((*self.shapes.shapes,), (*self.widgets,), (*drawn,), (*drawn, *widgets))
 
     def point(self, at: Point) -> None:
         """Move the mouse."""
@@ -217,6 +245,7 @@ class StillWindow:
             low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
             label = next((word for word in words if isinstance(word, str)), "")
             self.widgets.append(Shape(name, ((low.x, low.y), (high.x, high.y)), (), 0, label))
+            self._widget_clips.append(find_clip())
             return answer
 
         return draw

@@ -14,14 +14,19 @@ import pytest
 from drawn_shapes import Shape
 from gui_screens import write_many_things
 from still_editor import open_still_editor
-from still_pictures import show_files, show_handles, show_opened_fields, show_passes, show_viewer
-from still_screens import show_animation, show_panels, show_renders, show_typical_nodes, show_values
+from still_pictures import show_files, show_handles, show_lessons, show_opened_fields, show_passes, show_viewer
+from still_screens import (
+    show_animation,
+    show_dialogs,
+    show_more_dialogs,
+    show_panels,
+    show_renders,
+    show_typical_nodes,
+    show_values,
+)
 from still_window import Rect, overlap
 
-LEFT, RIGHT = 20.0, 360.0
-"""The sides of the pane."""
-
-CUT = "table", "compare", "notes", "sheet", "curves"
+CUT = "table", "compare", "notes", "sheet", "curves", "image list"
 """How screens begin in which texts are cut where a column or a ruler ends, or a menu or a tip lies over the panel."""
 
 FLAT = 2.2
@@ -56,18 +61,20 @@ def find_bounds(shape: Shape) -> Rect:
     return min(across) - radius, min(down) - radius, max(across) + radius, max(down) + radius
 
 
-@pytest.mark.parametrize("screens", SCREENS)
+@pytest.mark.parametrize("screens", [*SCREENS, show_dialogs, show_more_dialogs, show_lessons])
 def test_texts_lie_apart_and_inside_of_their_panel(draw, screens) -> None:
     faults, count = list[str](), 0
     for name, drawing in draw(screens).items():
-        texts = [] if name.startswith(CUT) else drawing.list_texts()
+        texts = [text for text in drawing.texts if has_area(text.sight) and not name.startswith(CUT)]
         count += len(texts)
-        faults += [f"{name}: {text} at {box}" for box, text in texts if box[0] < LEFT or box[2] > RIGHT]
         faults += [
-            f"{name}: {text} at {box} and {other} at {place}"
-            for index, (box, text) in enumerate(texts)
-            for place, other in texts[index + 1 :]
-            if has_area(overlap(box, place), 1.5)
+            f"{name}: {text}" for text in texts if text.box[0] < text.clip[0] - 1.0 or text.box[2] > text.clip[2] + 1.0
+        ]
+        faults += [
+            f"{name}: {text} and {other}"
+            for index, text in enumerate(texts)
+            for other in texts[index + 1 :]
+            if has_area(overlap(text.sight, other.sight), 1.5)
         ]
     assert not faults and count > 0, faults[:5]
 
@@ -79,9 +86,9 @@ def test_a_line_of_text_is_in_the_middle_of_its_box(draw, screens) -> None:
         boxes = drawing.list_boxes("filled rect", "rect", "invisible_button", "button", "selectable", "dummy")
         if "operator 0" in name:  # an open list lies over the fields
             continue
-        pairs = [(shape, sight) for shape, sight in zip(drawing.shapes, drawing.sights, strict=True) if has_area(sight)]
-        for shape, sight in pairs:
-            if shape.kind != "text":
+        for text in drawing.drawn_texts:
+            sight = text.sight
+            if not has_area(sight):
                 continue
             x, y = (sight[0] + sight[2]) / 2, (sight[1] + sight[3]) / 2
             around = [box for box in boxes if holds(box, (x, y, x, y), 0.0) and has_area(box)]
@@ -91,7 +98,7 @@ def test_a_line_of_text_is_in_the_middle_of_its_box(draw, screens) -> None:
             count += 1
             box = min(around, key=lambda box: (box[2] - box[0]) * (box[3] - box[1]))
             if abs((box[1] + box[3]) / 2 - y) > 1.0 or not holds((box[0], -1e9, box[2], 1e9), sight):
-                faults.append(f"{name}: {shape.text} at {sight} in {box}")
+                faults.append(f"{name}: {text} in {box}")
     assert not faults, faults[:5]
     assert count > 0 or screens in (show_passes, show_renders)
 
@@ -121,6 +128,19 @@ def test_a_mark_is_in_the_middle_of_its_button(draw, screens) -> None:
                 faults.append(f"{name}: {inside} are {down} too low in {box}")
     assert not faults, faults[:5]
     assert len({abs(side) for side in sides}) <= 1
+
+
+@pytest.mark.parametrize("screens", [*SCREENS, show_opened_fields, show_dialogs, show_more_dialogs, show_lessons])
+def test_rectangles_have_an_area_and_lines_a_width(draw, screens) -> None:
+    faults = list[str]()
+    for name, drawing in draw(screens).items():
+        for shape in drawing.shapes:
+            (x0, y0), (x1, y1) = (*shape.points, (0.0, 0.0), (1.0, 1.0))[:2]
+            if "rect" in shape.kind and not (x0 < x1 and y0 < y1):
+                faults.append(f"{name}: {shape}")
+            if shape.kind in ("disk", "circle", "ngon", "line", "polyline", "stroke") and min(shape.lengths) <= 0.0:
+                faults.append(f"{name}: {shape}")
+    assert not faults, (len(faults), faults[:5])
 
 
 @pytest.mark.parametrize("screens", PLAIN)
