@@ -11,11 +11,11 @@ from halation.authoring.preview.pass_pictures import PassPicture
 from halation.editor.tutorials.course import COURSE
 from halation.export.surface_picture import SurfacePicture
 from halation.graph import Expression, Graph, Input, Key, Keys, Output, Port
-from halation.nodes import Kind, catalogue
+from halation.nodes import Kind, Node, Value, catalogue
 from halation.nodes.input.read_image import ReadImage
 from imgui_bundle import imgui
 from still_editor import StillEditor
-from still_screens import Screens
+from still_screens import Screens, describe_kind
 
 RENDER = Path(__file__).parent / "data/blender45_multilayer.exr"
 """A render of Blender with many layers, a camera and a cryptomatte with names."""
@@ -41,6 +41,13 @@ def make_graph(id: str) -> Graph:
         if source := sources.get(socket.kind):
             graph = graph.connect(source, Port("node", name))
     return graph
+
+
+def find_value(graph: Graph, words: str) -> Value | None:
+    """The declaration of the value that a place is named after."""
+    node, _, name = words.partition(".")
+    item = graph.nodes.get(node)
+    return item.values.get(name) if isinstance(item, Node) else None
 
 
 def show_handles(still: StillEditor) -> Screens:
@@ -179,10 +186,12 @@ def _open(still: StillEditor, places: Sequence[tuple[str, str]]) -> Screens:
     for title, name in places:
         still.select(*filter(None, (name,)))
         still.show(title)
-        seen = set[str]()
+        seen = set[object]()
         for place in sorted(still.places):
-            kind = " ".join(place.split()[: 2 if place.startswith("button") else 1])
-            if kind in seen and not (title == "Inspector" and kind == "field"):
+            kind: object = " ".join(place.split()[: 2 if place.startswith("button") else 1])
+            if kind == "field" and (value := find_value(session.graph, place.removeprefix("field "))):
+                kind = describe_kind(value)
+            if kind in seen:
                 continue
             seen.add(kind)
             acts = ((0, 0.5), (0, 0.03), (1, 0.5))

@@ -13,8 +13,8 @@ from still_editor import StillEditor
 PANELS = (
     ("Viewer", ""), ("Log", ""), ("History", ""), ("Renders", ""), ("Animation", ""), ("Preferences", "preferences"),
     ("Export", "export"), ("Command palette", "palette"), ("Node", "node"), ("Timeline", ""),
-    ("Shortcuts", "shortcuts"), ("About", "about"), ("Problems", ""), ("Start", "start"), ("Save as preset", "preset"), ("Scopes", ""),
-    ("Inspector", ""), ("Graph", ""),
+    ("Shortcuts", "shortcuts"), ("About", "about"), ("Problems", ""), ("Start", "start"), ("Save as preset", "preset"),
+    ("Scopes", ""), ("Inspector", ""), ("Graph", ""),
 )  # fmt: skip
 
 PRESSED = "button", "checkbox", "radio_button", "small_button", "selectable", "menu_item"
