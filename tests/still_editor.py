@@ -109,6 +109,26 @@ class StillEditor:
         io.add_mouse_button_event(0, False)
         self.pane.draw(body, 2)
 
+    def pull(self, title: str, place: str, by: Point, steps: int = 4) -> None:
+        """Press in the middle of a place, move the mouse by some pixels, and let go."""
+        body, io = self._frame(self.find(title).draw), imgui.get_io()
+        x, y = self.find_point(place)
+        self.pane.point((x, y))
+        self.pane.draw(body, 3)
+        io.add_mouse_button_event(0, True)
+        self.pane.draw(body)
+        for step in range(1, steps + 1):
+            self.pane.point((x + by[0] * step / steps, y + by[1] * step / steps))
+            self.pane.draw(body, 2)
+        io.add_mouse_button_event(0, False)
+        self.pane.draw(body, 2)
+        self.show(title, 2)
+
+    def undo_to(self, root: Graph) -> None:
+        """Take back what was done since the document was this."""
+        while self.editor.session.root is not root and self.editor.session.history.steps:
+            self.editor.session.undo()
+
     def turn_wheel(self, title: str, place: str, steps: float) -> None:
         """Turn the wheel over a place, with Ctrl held."""
         body, io = self._frame(self.find(title).draw), imgui.get_io()

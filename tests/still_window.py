@@ -95,9 +95,9 @@ class SeenShapes(DrawnShapes):
         for box in self._clips[-1:]:
             clip = overlap(clip, box)
         self.clips.append(clip)
-        (x, y), box = self.shapes[-1].points[0] if points else (0.0, 0.0), (0.0,) * 4
+        box: Rect = 0.0, 0.0, 0.0, 0.0
         if kind == "text":
-            size, wrap = self.shapes[-1].lengths
+            (x, y), (size, wrap) = self.shapes[-1].points[0], self.shapes[-1].lengths
             part = size / imgui.get_font_size() if size != self.em else 1.0
             room = imgui.calc_text_size(text, wrap_width=wrap / part if wrap else -1.0)
             box = x, y, x + room.x * part, y + room.y * part
