@@ -37,12 +37,20 @@ def main() -> None:
             stream.reconfigure(errors="backslashreplace")
     raise_on_requests()
     try:
-        from .program import run_process
-
-        code = call_with_room(run_process, sys.argv[1:])
+        code = _run(sys.argv[1:])
     except KeyboardInterrupt:  # while modules are still being imported
         code = _INTERRUPTED
     os._exit(code)
+
+
+def _run(arguments: list[str]) -> int:
+    from .head_start import begin_early
+
+    if (code := begin_early(arguments)) is not None:
+        return code
+    from .program import run_process
+
+    return call_with_room(run_process, arguments)
 
 
 def _replace_closed_streams() -> None:

@@ -25,7 +25,7 @@ from ..resources.heartbeat import Watchdog, name_signal
 from ..resources.interrupts import delay_interrupts
 from ..resources.machine import available_cores
 from .outcome import print_note
-from .watchdog import CHECK_INTERVAL
+from .watched_copy import CHECK_INTERVAL
 
 if TYPE_CHECKING:
     from ..renderer.jobs.render_job import RenderJob

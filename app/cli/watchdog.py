@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import contextlib
 import os
-import select
 import signal
 import subprocess
 import sys
@@ -24,14 +23,18 @@ from ..errors import DeviceError, HalationError
 from ..resources.heartbeat import BEACON_FILE, Watchdog, explain_memory_limit, name_signal
 from ..resources.program import module_command
 from .outcome import flush_output, print_note, report_failure
-from .signals import end_with_parent_thread, ignore_interrupts, relay_requests
+from .signals import end_with_parent_thread, relay_requests
+from .watched_copy import (
+    CHECK_INTERVAL,
+    begin_late_watchdog,
+    enter_copy,
+    make_heartbeat,
+    wait_for_end,
+    watch_copy,
+)
 
 if TYPE_CHECKING:
     from ..graph import Graph
-
-CHECK_INTERVAL = 0.05
-"""Seconds between two checks of the other process. A compiler takes at most 0.2 GB of memory in that time, measured
-with Mesa 22.3."""
 
 DEVICE_MODULE = "halation.renderer.opengl.device"
 """Loaded where the process may have opened OpenGL, whose threads would be missing in a copy."""
@@ -118,7 +121,7 @@ def run_watched(
 
     It is done in a copy of this process that this one watches, if they have code and there can be a copy.
     """
-    if any(map(needs_watchdog, graphs)) and can_fork():
+    if any(map(needs_watchdog, graphs)) and not begin_late_watchdog(timeout, memory) and can_fork():
         return run_forked(work, timeout, memory, as_json)
     return work()
 
@@ -169,11 +172,6 @@ def run_stream_service(work: Callable[[], int], timeout: float, as_json: bool) -
     return 0
 
 
-def wait_for_end(handle: int, seconds: float) -> bool:
-    """Wait for a process for some time; True if it has ended."""
-    return bool(select.select([handle], [], [], seconds)[0])
-
-
 def run_forked(
     work: Callable[[], int],
     timeout: float,
@@ -189,32 +187,15 @@ def run_forked(
     the meantime than to wait. Raises DeviceError for code that takes too long, takes too much memory, or ends its
     process.
     """
-    import tempfile  # few graphs have such code
-
-    with tempfile.TemporaryDirectory(prefix="halation-") as folder:
-        watchdog = Watchdog(Path(folder, "heartbeat"), timeout, memory, tries_first)
-        sys.stdout.flush()
-        sys.stderr.flush()
-        process = os.fork()
-        if process == 0:
-            os.environ.update(watchdog.environment)
-            end_with_parent_thread()
-            ignore_interrupts()
-            os._exit(_finish(work, as_json))
-        handle = os.pidfd_open(process)
-        try:
-            with relay_requests(process, is_copy=True) as requests:
-                while not wait(handle, CHECK_INTERVAL):
-                    if fault := watchdog.check(process):
-                        os.kill(process, signal.SIGKILL)
-                        os.waitpid(process, 0)
-                        raise fault
-                code = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
-        finally:
-            os.close(handle)
-        if code < 0:
-            raise KeyboardInterrupt if requests else watchdog.explain_signal(-code)
-        return code
+    watchdog = Watchdog(make_heartbeat(), timeout, memory, tries_first)
+    sys.stdout.flush()
+    sys.stderr.flush()
+    process = os.fork()
+    if process == 0:
+        os.environ.update(watchdog.environment)
+        enter_copy()
+        os._exit(_finish(work, as_json))
+    return watch_copy(process, watchdog, wait)
 
 
 def _finish(work: Callable[[], int], as_json: bool) -> int:

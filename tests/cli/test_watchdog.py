@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
 import json
 import os
@@ -10,6 +11,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -57,6 +59,14 @@ def test_code_that_never_ends_is_stopped(tmp_path: Path) -> None:
     said = json.loads(ended.stdout)["error"]
     assert said["kind"] == "DeviceError"
     assert said["message"].startswith("node 'user': its code has not ended after 1 seconds")
+
+
+def test_code_whose_type_is_spelled_with_an_escape_is_stopped_too(tmp_path: Path) -> None:
+    """What a render begins early looks for the plain word."""
+    path = graph(tmp_path, ENDLESS)
+    path.write_text(path.read_text().replace('"glsl"', '"gl\\u0073l"'))
+    ended = render(path, "-o", tmp_path / "out.exr", "--timeout", 1)
+    assert ended.returncode == 5 and "its code has not ended after 1 seconds" in ended.stderr
 
 
 @pytest.mark.parametrize("piped", [False, True])
@@ -170,10 +180,10 @@ def test_the_memory_limit_holds_while_wgsl_is_made(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="it lists the processes of another one")
-@pytest.mark.parametrize("processes", [1, 2])
-def test_code_that_ends_its_process(tmp_path: Path, processes: int) -> None:
+@pytest.mark.parametrize("jobs", ["", "-j 1", "-j 2"])
+def test_code_that_ends_its_process(tmp_path: Path, jobs: str) -> None:
     """A driver that dies takes one process with it; the other one says whose code it was, when it has no time left."""
-    words = ("-o", tmp_path / "o.##.exr", "--frames", "1-2", "-j", processes, "--timeout", 8)
+    words = ("-o", tmp_path / "o.##.exr", "--frames", "1-2", *jobs.split(), "--timeout", 8)
     command = [*HALATION, "render", *map(str, (graph(tmp_path, ENDLESS), *words)), "--json"]
     started = subprocess.Popen(
         command,
@@ -185,13 +195,21 @@ def test_code_that_ends_its_process(tmp_path: Path, processes: int) -> None:
     beats: tuple[Path, ...] = ()
     while not any(path.read_text() for path in beats):
         time.sleep(0.1)
-        beats = tuple(tmp_path.glob("halation-*/heartbeat*"))
+        beats = (*tmp_path.glob("halation-*/heartbeat*"), *_heartbeats_in_memory(started.pid))
     children = Path(f"/proc/{started.pid}/task/{started.pid}/children").read_text().split()
     busy = str(next(path for path in beats if path.read_text()))
-    os.kill(next(int(child) for child in children if processes == 1 or _heartbeat_of(child) == busy), signal.SIGSEGV)
+    os.kill(next(int(child) for child in children if jobs != "-j 2" or _heartbeat_of(child) == busy), signal.SIGSEGV)
     printed, _ = started.communicate(timeout=60)
     assert started.returncode == 5
     assert json.loads(printed)["error"]["message"].startswith("node 'user': its code has ended the process (SIGSEGV)")
+
+
+def _heartbeats_in_memory(process: int) -> Iterator[Path]:
+    """The files that a process has opened in memory for heartbeats."""
+    for file in Path(f"/proc/{process}/fd").iterdir():
+        with contextlib.suppress(FileNotFoundError):  # it is closed meanwhile
+            if "heartbeat" in str(file.readlink()):
+                yield file
 
 
 def _heartbeat_of(process: str) -> str:

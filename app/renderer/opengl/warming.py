@@ -6,6 +6,7 @@ import ctypes
 import os
 import sys
 import threading
+from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -21,8 +22,9 @@ _DEVICE = 0x313F
 _THREAD = "driver"
 
 
+@cache
 def warm() -> None:
-    """Begin to load the driver of a context without a window on another thread, on Linux.
+    """Begin to load the driver of a context without a window on another thread, on Linux, once.
 
     It is only an optimization: opening a device works without it, and only that reports errors.
     """
