@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...graph import Interpolation, Keys, Port
 from ..toolkit.plane import Plane
-from .hits import Mark, find_line
+from .hits import KEYS_BEYOND, Mark, find_line
 from .rows import CurveRow, Lane, Spot
 from .shapes import (
     Pieces,
@@ -23,8 +23,6 @@ from .shapes import (
 )
 
 Floats = NDArray[np.float64]
-_BEYOND = 12.0
-"""Pixels beyond the border at which keys are still drawn."""
 
 
 class CurveShape(Struct, frozen=True):
@@ -73,7 +71,7 @@ class Bundle(Struct, frozen=True):
         inside = (self.pieces[:, 3, 0] >= view.first) & (self.pieces[:, 0, 0] <= view.last)
         screen, bent = project_pieces(self.pieces[inside], plane, self.straight[inside])
         cuts = np.searchsorted(self.piece_of[inside], np.arange(len(self.lanes) + 1))
-        room = _BEYOND / plane.across
+        room = KEYS_BEYOND / plane.across
         visible_keys = np.nonzero((self.frames >= view.first - room) & (self.frames <= view.last + room))[0]
         xs = plane.rect[0] + (self.frames[visible_keys] - view.first) * plane.across
         ys = plane.rect[3] - (self.values[visible_keys] - view.low) * plane.up

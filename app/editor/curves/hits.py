@@ -17,7 +17,7 @@ REACH = 7.0
 """Pixels (at UI scale 1) from the middle of a key at which it can be grabbed."""
 
 SIDES: tuple[Side, Side] = ("left", "right")
-_BEYOND = 12.0
+KEYS_BEYOND = 12.0
 """Pixels beyond the view in which keys are still drawn and hit: their marks are that wide."""
 
 
@@ -81,7 +81,7 @@ def find_sheet_marks(
 ) -> list[list[Mark]]:
     """The visible keys of every row; the first row begins at `top`, each is `high` pixels high."""
     marks_by_row: list[list[Mark]] = []
-    first, last = plane.frame(plane.rect[0] - _BEYOND), plane.frame(plane.rect[2] + _BEYOND)
+    first, last = plane.frame(plane.rect[0] - KEYS_BEYOND), plane.frame(plane.rect[2] + KEYS_BEYOND)
     start, across = plane.x(0.0), plane.across
     for place, row in enumerate(rows):
         y = top + (place + 0.5) * high
