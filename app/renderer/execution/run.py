@@ -168,6 +168,7 @@ class WholeRun(Run):
         """Execute the next pass, or a band of it; one that is timed is not divided."""
         render_pass = self.plan.passes[self._needed_passes[self.passes_done]]
         if self._bands is None:
+            self._compile_meanwhile(render_pass.textures)
             self._upload(render_pass.textures)
         if self._timings is None:
             if self._bands is None:
@@ -183,6 +184,16 @@ class WholeRun(Run):
             if self._readers[key] == 0:
                 self._lease.release(key)
         self.passes_done += 1
+
+    def _compile_meanwhile(self, numbers: Iterable[int]) -> None:
+        """Compile programs, or load them from the driver's cache, for as long as these pictures are being decoded."""
+        awaited = [number for number in numbers if not self._is_uploaded(number)]
+        for index in self._needed_passes[self.passes_done :]:
+            render_pass = self.plan.passes[index]
+            if all(map(self._decode_queue.is_ready, awaited)):
+                return
+            if render_pass.host is None and self._executor.has_program(self.plan, render_pass):
+                self._executor.compile(render_pass)
 
     def _is_done_on_host(self) -> bool:
         """False while the next pass works on the processor. Begins that work."""
