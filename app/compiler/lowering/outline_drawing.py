@@ -26,7 +26,9 @@ class OutlineDraw:
         bits = _LEAST_BITS
         while max(map(len, tables.values())) > 4**bits:
             bits += 1
-        pictures = {name: self.table(array("f", numbers.tobytes()), 2**bits) for name, numbers in tables.items()}
+        pictures = {
+            name: self.table(_fill_rows(numbers.tobytes(), 2**bits), 2**bits) for name, numbers in tables.items()
+        }
         entries, shapes = pictures["entries"], pictures["shapes"]
         count = len(tables["entries"]) // ENTRY
         across = math.ceil(math.log2(max(2.0 * math.sqrt(count), 1.0)))
@@ -34,7 +36,7 @@ class OutlineDraw:
         covers = self(
             "path_covers_fine" if is_uneven else "path_covers", entries=entries, shapes=shapes,
             segments=pictures["segments"], chords=pictures["chords"],
-            nearest=pictures["nearest"], size=(_TILE // 4 << across, _TILE * max(1, -(-count >> across))),
+            nearest=pictures["nearest"], size=(_TILE // 4 << across, _TILE * _avoid_powers(-(-count >> across))),
             result=Vector(width=4), bits=bits, across=across, count=count, beyond=beyond,
         )  # fmt: skip
         return self(
@@ -42,3 +44,21 @@ class OutlineDraw:
             overlap={"mask": 0}, result=Field(), bits=bits, across=across, beyond=beyond,
             columns=-(-self.size[0] // _TILE) + 2 * beyond,
         )  # fmt: skip
+
+
+def _fill_rows(content: bytes, width: int) -> array[float]:
+    """Floats of 32 bits, and zeros up to the end of a row of that many pixels of four channels."""
+    numbers = array("f")
+    size = numbers.itemsize * 4 * width
+    numbers.frombytes(content.ljust(size * _avoid_powers(-(-len(content) // size)), b"\0"))
+    return numbers
+
+
+def _avoid_powers(rows: int) -> int:
+    """As many rows or a few more, whose number is no power of two.
+
+    Mesa compiles a program again for pictures whose height is one: the largest takes 0.5 s, and `burn_in` had it three
+    times, with an empty cache.
+    """
+    rows = max(rows, 3)
+    return rows + (rows & (rows - 1) == 0)
