@@ -10,6 +10,7 @@ import pytest
 from halation import presets
 from halation.editor.theme.palette import DARK
 from halation.editor.theme.style import u32
+from halation.editor.tutorials import coach
 from halation.editor.tutorials.course import COURSE
 from halation.editor.viewer import ground
 from halation.editor.workflows.documents import DocumentWorkflow
@@ -139,3 +140,43 @@ def test_a_point_of_the_picture_is_in_one_pixel_and_one_beside_it_in_none(
     at = (share, 0.25) if axis == 0 else (0.25, share)
     assert (ground.depth_at(context, at) == 1.0) is (pixel is not None)
     assert read == ([] if pixel is None else [(pixel, 2) if axis == 0 else (2, pixel)])
+
+
+def test_nothing_is_known_without_a_link_or_a_picture(monkeypatch: pytest.MonkeyPatch) -> None:
+    port = Port("node", "depth")
+    for ports, image in (({}, SimpleNamespace(port=port, full_size=(8, 8))), ({"depth": port}, None)):
+        monkeypatch.setattr(ground, "depths", lambda context, ports=ports: ports)
+        context: Any = SimpleNamespace(preview=SimpleNamespace(find_whole_image=lambda name, image=image: image))
+        assert ground.depth_at(context, (0.5, 0.5)) is None
+
+
+@pytest.mark.parametrize("index", [0, TASK])
+def test_next_is_lit_where_there_is_nothing_to_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, index: int) -> None:
+    seen = dict[str, tuple[str, bool]]()
+    with open_still_editor(tmp_path, Graph()) as still:
+        begin(still, index)
+        monkeypatch.setattr(
+            coach, "quiet_button", lambda context, label, name, doc, lit: seen.update({name: (doc, lit)})
+        )
+        still.show("Tutorial", 1)
+    is_read = LESSON.steps[index].is_done is None
+    assert {name for name, (_, lit) in seen.items() if lit} == ({"tutorial next"} if is_read else set())
+    assert {name for name, (doc, _) in seen.items() if doc} == {*seen} - {"tutorial next", "tutorial back"}
+
+
+def test_keys_end_where_the_line_of_their_block_ends(tmp_path: Path) -> None:
+    """And the title of a block begins where its line begins."""
+    with open_still_editor(tmp_path, Graph(), screen=(3000.0, 3000.0)) as still:
+        still.editor.dialogs.open.add("shortcuts")
+        still.show("Shortcuts", 4)
+        drawing = still.pane.copy()
+        lines = [shape.points for shape in drawing.shapes if shape.kind == "line"]
+        words = [shape for shape in drawing.widgets if shape.kind == "text_colored"]
+        assert lines and len(words) > 2 * len(lines)
+        titles = 0
+        for word in words:
+            (left, _), (right, _) = word.points
+            is_title = any(abs(left - start[0]) < 1.0 for start, _ in lines)
+            titles += is_title
+            assert is_title or any(abs(right - end[0]) < 1.0 for _, end in lines), word
+        assert titles == len(lines)
