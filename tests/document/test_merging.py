@@ -286,6 +286,29 @@ def test_true_conflicts(ours: dict[str, Any], theirs: dict[str, Any], paths: set
     assert done.nodes.items() >= sides[2].nodes.items() and done.links.items() >= sides[2].links.items()
 
 
+GONE = {"nodes/light": None, "links/light.image": None, "links/outputs.image": "blur.out", "animation": None}
+"""`light` is removed, and what it was linked to."""
+
+
+@pytest.mark.parametrize(
+    ("uses", "path"),
+    [
+        ({"nodes/light/muted": True}, "nodes.light"),
+        ({"links/light.image": "inputs.beauty"}, "links.light.image"),
+        ({"nodes/a": NEW, "links/a.image": "light.out"}, "links.a.image"),
+        ({"controls": {"knob": {"target": "light.stops"}}}, "controls.knob"),
+        ({"animation/light.stops/keys": [key(1, 0.5)]}, "animation.light.stops"),
+        ({"animation/blur.sigma": {"expression": "light.stops * 2"}}, "animation.blur.sigma"),
+    ],
+)
+def test_nothing_goes_that_the_other_side_began_to_use(uses: dict[str, Any], path: str) -> None:
+    """In whichever way: its removal and the use of it are both open."""
+    sides = made(BASE), made(BASE, **GONE), made(BASE, **uses)
+    both = [merge_graphs(*sides), merge_graphs(sides[0], sides[2], sides[1])]
+    open = [{conflict.path for conflict in found.conflicts} for found in both]
+    assert open[0] == open[1] >= {"nodes.light", path}
+
+
 def test_links_that_only_together_make_a_loop() -> None:
     base = {**BASE, "nodes": {**BASE["nodes"], "a": {"type": "merge"}, "b": {"type": "merge"}}}
     ours, theirs = made(base, **{"links/a.a": "b.out"}), made(base, **{"links/b.a": "a.out"})

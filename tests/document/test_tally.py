@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+from random import Random
 from typing import Any
 
 import pytest
 from halation.document import limits, loads
+from halation.document.tally import count_parts
 from halation.errors import DocumentError
 from halation.graph.expressions.tokens import MAX_LENGTH
 from large_graphs import animated, chain, change, controlled, document, keyed
@@ -92,6 +94,29 @@ def test_one_part_more_is_refused(build: Any, section: str) -> None:
     with pytest.raises(DocumentError, match=f"more than {MOST} .*; that is no graph") as caught:
         loads(json.dumps(build(MOST + 1)), sandbox=None)
     assert caught.value.path.partition(".")[0] == section or not section
+
+
+def make_tree(rng: Random, depth: int = 0) -> Any:
+    """Entries whose names and texts JSON must escape, or that look like its parts."""
+    text = "".join(rng.choices('"\\[]{},:x\n', k=rng.randrange(6)))
+    if depth and rng.random() < 0.4:
+        return rng.choice((text, None, 1.5))
+    parts = [make_tree(rng, depth + 1) for _ in range(rng.randrange(4 - depth // 2))]
+    return parts if rng.random() < 0.5 else {f"{text}{at}": part for at, part in enumerate(parts)}
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_parts_are_those_that_a_walk_finds(seed: int) -> None:
+    """Each object and list, and a comma between two entries, whatever the texts hold."""
+    tree = make_tree(Random(seed))
+
+    def walk(part: Any) -> int:
+        if not isinstance(part, list | dict):
+            return 0
+        entries = part.values() if isinstance(part, dict) else part
+        return 1 + max(len(part) - 1, 0) + sum(map(walk, entries))
+
+    assert count_parts(tree) == walk(tree)
 
 
 def test_parts_of_groups_count_too() -> None:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from itertools import product
+from typing import Any
 
 import pytest
 from halation.errors import GraphError
-from halation.graph import Port, conversion, did_you_mean
+from halation.graph import Graph, Input, Port, conversion, did_you_mean
 from halation.graph.conversion import make_socket
-from halation.nodes import Kind, Socket, catalogue
+from halation.nodes import Kind, Pointwise, Socket, catalogue
 from toy_nodes import Gain
 
 KINDS = {
@@ -55,6 +56,26 @@ def test_values(source: str, name: str) -> None:
     reason = conversion(KINDS[source], value)
     assert (reason is None) == (source in VALUES[name].split())
     assert (VALUES[name] == "") == (not value.wireable)
+
+
+@pytest.mark.parametrize(
+    ("kind", "default"), [*product(KINDS, (2, 0.5)), ("Image", (1, 2, 3, 4)), ("Color", (0.1, 0.2, 0.3, 1.0))]
+)
+def test_a_default_is_kept(kind: str, default: Any) -> None:
+    """One number or one per channel, as `Input` is given it."""
+    end = Input(KINDS[kind].kind, 3, default=default).socket("end")
+    assert end.default == default and isinstance(end.default, float | tuple)
+    assert Input(KINDS[kind].kind, 3, default="#ff0000").socket("end").default is None
+
+
+def test_only_values_of_pointwise_nodes_are_wired() -> None:
+    """A number for every value of every node."""
+    nodes = {id: node() for id, node in catalogue().items()}
+    values = {Port(id, value.name): node for id, node in nodes.items() for value in node.values.values()}
+    ports = {port: node for port, node in values.items() if node.values[port.socket].type == "float"}
+    faults = Graph(nodes, dict.fromkeys(ports, Port("histogram", "mean"))).link_faults
+    refused = {port for port, why in faults.items() if "only values of pointwise nodes" in why}
+    assert refused == {port for port, node in ports.items() if not isinstance(node, Pointwise)}
 
 
 @pytest.mark.parametrize(("source", "target"), list(product(KINDS, KINDS)))

@@ -6,6 +6,7 @@ import dataclasses
 from collections.abc import Callable
 from random import Random
 
+import numpy as np
 import pytest
 from halation.errors import GraphError
 from halation.graph import Control, Graph, Group, Input, Output, Port, Unknown, conversion, problems, signature
@@ -196,6 +197,15 @@ class TestSet:
     def test_refuses(self, name: str, value: object, says: str) -> None:
         with pytest.raises(GraphError, match=says):
             small().set(Port("gain", name), value)
+
+    def test_floats_are_as_large_as_those_of_32_bits(self) -> None:
+        most = float(np.finfo(np.float32).max)
+        for name, setting in (("tint", (0.0, -most, most, 1.0)), ("center", (most, -most))):
+            assert small().set(Port("gain", name), setting).value(Port("gain", name)) == setting
+            for number in (1.0001 * most, -1.0001 * most):
+                with pytest.raises(GraphError, match="too large for 32 bits"):
+                    small().set(Port("gain", name), (number, *setting[1:]))
+        assert small().set(Port("gain", "steps"), 2**31 - 1).value(Port("gain", "steps")) == 2**31 - 1
 
     def test_unknown_nodes_cannot_be_set(self) -> None:
         with pytest.raises(GraphError, match="the type of node 'x' is unknown"):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from itertools import pairwise
 from random import Random
+from typing import Any
 
 import numpy as np
 import pytest
@@ -113,6 +114,16 @@ def test_held_frames_take_no_part_in_curves() -> None:
     assert [held.evaluate(frame) for frame in (0.0, 5.0, 9.99)] == [0.5, 0.5, 0.5]
     assert [held.evaluate(frame) for frame in range(10, 31)] == [alone.evaluate(frame) for frame in range(10, 31)]
     assert keys.evaluate(12.0) != alone.evaluate(12.0)
+
+
+@pytest.mark.parametrize("first", [3, -4])
+@pytest.mark.parametrize(("outside", "mode"), [("loop", "wrap"), ("mirror", "reflect")])
+def test_periods_begin_at_the_first_key(outside: Extrapolation, mode: Any, first: int) -> None:
+    """Wherever that is: as numpy repeats the seven values between the keys, and mirrors them."""
+    heights = [0.0, 2.0, 5.0, 1.0, 0.5, -1.0, 4.0] + ([0.0] if outside == "loop" else [])
+    keys = keyed([float(first + place) for place in range(len(heights))], heights, "linear", outside)
+    table = np.pad(heights[:7], 23, mode)
+    assert [keys.evaluate(float(first + place)) for place in range(-23, 30)] == pytest.approx(table.tolist(), abs=1e-12)
 
 
 def test_outside_of_the_keys() -> None:
