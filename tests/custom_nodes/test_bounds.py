@@ -93,6 +93,10 @@ EDGES: dict[str, tuple[int, Maker]] = {
     "structs": (16384 // 13, lambda n: function(f"S s[{n}];", "struct S { vec3 v[4]; float w; };")),
     "an index": (16384, lambda n: function(f"float a[4]; a[{n}] = x;")),
     "functions": (1000, lambda n: "".join(f"float g{k}(float x) {{ return x; }}\n" for k in range(n))),
+    "words and signs with the calls written out, brackets that end bodies aside": (
+        250_000 - 1 - 90 * (5 + 1 + 900 * 3),
+        lambda n: f"float g(float x) {{ {'x++;' * 900} }}\n" + f"float f(float x) {{ {'g(x);' * 90}{';' * n} }}",
+    ),
     "calls, from the first function to the last": (101, lambda n: calls(1, n)),
 }
 """The most of each thing that there may be, as messages say it, and a text with that many."""

@@ -147,7 +147,7 @@ def test_mixed_numbers(run: Run) -> None:
 )
 @pytest.mark.parametrize("sign", ["/", "%"])
 def test_constants_that_only_the_driver_can_tell(run: Run, divisor: str, sign: str) -> None:
-    """They are variables then, and so are constants that are made of them."""
+    """They are variables then, and so are constants that are made of them; others still are lengths of arrays."""
     text = f"""struct S {{ int a; }};
     const S s = S(-1);
     const int t[1] = int[1](-1);
@@ -155,8 +155,9 @@ def test_constants_that_only_the_driver_can_tell(run: Run, divisor: str, sign: s
     const float twice = float(q) * 2.0;
     vec4 f(vec4 image) {{
         const int inner = q {sign} {divisor};
+        float list[other];
         return q == {"-2147483647 - 1" if sign == "/" else "0"} && twice == float(q) * 2.0 && other == 3
-            && inner == q ? vec4(1.0) : vec4(0.0);
+            && list.length() == 3 && inner == q ? vec4(1.0) : vec4(0.0);
     }}"""
     assert (run(node_type(Code("glsl", text))(), PIXEL) == 1.0).all()
 

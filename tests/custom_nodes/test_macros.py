@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from conftest import Run
@@ -148,6 +150,26 @@ def test_what_is_refused_names_its_line(text: str, line: int, sentence: str) -> 
     with pytest.raises(GlslFault) as caught:
         expand_macros(text)
     assert (caught.value.line, sentence in caught.value.sentence) == (line, True), caught.value
+
+
+EDGES: dict[str, tuple[int, Callable[[int], str]]] = {
+    "letters": (1024, lambda n: "a" * n),
+    "words": (MOST_TOKENS, lambda n: "a " * n),
+    "words in two lines": (MOST_TOKENS - 9, lambda n: "a " * 9 + "\n" + "a " * n),
+    "macros, with the two of the language": (998, lambda n: "\n".join(f"#define M{k} 1" for k in range(n))),
+    "conditions inside each other": (64, lambda n: "#if 1\n" * n + "#endif\n" * n),
+    "macros inside each other": (64, lambda n: "#define E(x) x\n" + "E(" * n + "1" + ")" * n),
+    "macros that name each other": (64, lambda n: "\n".join(f"#define M{k} M{k + 1}" for k in range(n)) + "\nM0"),
+}
+"""The most of each thing that there may be, and a text with that many."""
+
+
+@pytest.mark.parametrize("case", EDGES)
+def test_bounds_are_where_messages_say(case: str) -> None:
+    most, make = EDGES[case]
+    expand_macros(make(most))
+    with pytest.raises(GlslFault, match=r"more than|inside each other|letters|macros"):
+        expand_macros(make(most + 1))
 
 
 @pytest.mark.parametrize(
