@@ -23,6 +23,7 @@ DEEPEST = 250
 """Brackets inside each other of text whose size is checked elsewhere."""
 
 _KEYWORDS = frozenset({"return", "if", "while", "for", "switch", "else", "case", "do", "in", "out", "inout", "const"})
+_QUALIFIERS = frozenset({"const", "highp", "mediump", "lowp"})
 _PREFIXES = frozenset({"-", "+", "!", "~", "++", "--"})
 _MULTIPLICATIVE = frozenset({"*", "/", "%"})
 _DIVIDERS: Mapping[str, str] = {"/": QUOTIENT, "%": REMAINDER, "/=": QUOTIENT, "%=": REMAINDER}
@@ -229,13 +230,15 @@ class _DivisionGuard:
         return variables
 
     def _list_assigned_names(self, at: int) -> tuple[set[str], set[str]]:
-        """The names that a statement declares, and all that it says."""
+        """The names that a statement declares, behind a type or a comma, and all that it says."""
         declared, read = set[str](), set[str]()
         while at + 1 < len(self.tokens) and self.tokens[at].text != ";":
-            if self.tokens[at].is_word:
-                read.add(self.tokens[at].text)
-                if self.tokens[at + 1].text in ("=", "["):
-                    declared.add(self.tokens[at].text)
+            token, before = self.tokens[at], self.tokens[at - 1]
+            if token.is_word:
+                read.add(token.text)
+                is_behind = before.text in (",", "]") or (before.is_word and before.text not in _QUALIFIERS)
+                if is_behind and self.tokens[at + 1].text in ("=", "["):
+                    declared.add(token.text)
             at += 1
         return declared, read
 

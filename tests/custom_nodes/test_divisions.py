@@ -155,7 +155,8 @@ def test_constants_that_only_the_driver_can_tell(run: Run, divisor: str, sign: s
     const float twice = float(q) * 2.0;
     vec4 f(vec4 image) {{
         const int inner = q {sign} {divisor};
-        float list[other];
+        const int count = 3;
+        float list[count];
         return q == {"-2147483647 - 1" if sign == "/" else "0"} && twice == float(q) * 2.0 && other == 3
             && list.length() == 3 && inner == q ? vec4(1.0) : vec4(0.0);
     }}"""

@@ -41,7 +41,7 @@ LEFT_OUT = Path("app/export/python/functions")
 Functions = ast.FunctionDef | ast.AsyncFunctionDef
 
 _HOOK = """
-import builtins, os, sys
+import builtins, fcntl, os, sys
 from importlib.machinery import SourceFileLoader
 
 sys.path.append({tests!r})
@@ -57,7 +57,9 @@ class Notes:
     def put(self, line):
         if self.process != os.getpid():
             self.process = os.getpid()
-            self.file = os.open(f"{folder}/{{self.process}}", os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+            file = os.open(f"{folder}/{{self.process}}", os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+            self.file = fcntl.fcntl(file, fcntl.F_DUPFD_CLOEXEC, 100)  # a process may have no stdout: drivers print to 1
+            os.close(file)
             self.seen.clear()
             self.put(b"T" + os.environ.get("PYTEST_CURRENT_TEST", "").rpartition(" ")[0].encode() + b"\\n")
         os.write(self.file, line)
