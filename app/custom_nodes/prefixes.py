@@ -35,7 +35,7 @@ def _find_globals(tokens: Sequence[GlslToken], partners: Mapping[int, int], stru
     at = 0
     while at < len(tokens):
         if TYPE.fullmatch(tokens[at].text) or tokens[at].text in structs:
-            place = skip_lengths(tokens, partners, at + 1) if partners else at + 1
+            place = skip_lengths(tokens, partners, at + 1)
             while place + 1 < len(tokens) and tokens[place].is_word and tokens[place + 1].text in ("=", ";", ",", "["):
                 names.add(tokens[place].text)
                 while place < len(tokens) and tokens[place].text not in (",", ";"):
@@ -43,7 +43,7 @@ def _find_globals(tokens: Sequence[GlslToken], partners: Mapping[int, int], stru
                 if place >= len(tokens) or tokens[place].text == ";":
                     break
                 place += 1
-            at = max(at, place - 1)
+            at = place - 1
         at = partners.get(at, at) + 1 if at < len(tokens) and tokens[at].text in ("(", "[", "{") else at + 1
     return names
 

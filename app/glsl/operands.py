@@ -185,8 +185,8 @@ def collect_names(tokens: Sequence[GlslToken], partners: Mapping[int, int], outs
 
 
 def skip_lengths(tokens: Sequence[GlslToken], partners: Mapping[int, int], at: int) -> int:
-    """The place after the square brackets that begin at a place."""
-    while at < len(tokens) and tokens[at].text == "[":
+    """The place after the square brackets that begin at a place and are closed."""
+    while at < len(tokens) and tokens[at].text == "[" and at in partners:
         at = partners[at] + 1
     return at
 

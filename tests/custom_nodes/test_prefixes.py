@@ -42,10 +42,16 @@ def test_a_constant_a_struct_and_its_members(run: Run) -> None:
 
 def test_what_is_prefixed() -> None:
     text = (
-        "struct S { float r; S2 q[N]; }; const int N = 1, M[2] = int[2](N, 3); float g; "
-        "float r(S s) { float k; return s.r + g; }"
+        "struct T { float r; }; struct S { highp float r; lowp T t; S2 q[N]; float r, g; }; "
+        "const int N = 1, M[2] = int[2](N, 3); float g; T[N] h; float[2][N] l, m; "
+        "float r(S s) { float k; return s.r + g + h[0].r + l[0][m]; }"
     )
     assert prefix_names(text, {"r"}, "w_") == (
-        "struct w_S { float r; S2 q[w_N]; }; const int w_N = 1, w_M[2] = int[2](w_N, 3); float w_g; "
-        "float w_r(w_S s) { float k; return s.r + w_g; }"
+        "struct w_T { float r; }; struct w_S { highp float r; lowp w_T t; S2 q[w_N]; float r, g; }; "
+        "const int w_N = 1, w_M[2] = int[2](w_N, 3); float w_g; w_T[w_N] w_h; float[2][w_N] w_l, w_m; "
+        "float w_r(w_S s) { float k; return s.r + w_g + w_h[0].r + w_l[0][w_m]; }"
     )
+
+
+def test_what_the_driver_refuses_is_left_to_it() -> None:
+    assert prefix_names("float[2 g; float h", {"h"}, "w_") == "float[2 g; float w_h"

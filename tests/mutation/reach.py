@@ -58,7 +58,7 @@ class Notes:
         if self.process != os.getpid():
             self.process = os.getpid()
             file = os.open(f"{folder}/{{self.process}}", os.O_WRONLY | os.O_CREAT | os.O_APPEND)
-            self.file = fcntl.fcntl(file, fcntl.F_DUPFD_CLOEXEC, 100)  # a process may have no stdout: drivers print to 1
+            self.file = fcntl.fcntl(file, fcntl.F_DUPFD_CLOEXEC, 100)  # 1 may be free: drivers print there
             os.close(file)
             self.seen.clear()
             self.put(b"T" + os.environ.get("PYTEST_CURRENT_TEST", "").rpartition(" ")[0].encode() + b"\\n")
