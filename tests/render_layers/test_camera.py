@@ -12,6 +12,7 @@ from halation.media import LayerRequest, read_layers
 from halation.nodes import CameraModel, Kind
 from halation.nodes._declare.camera import look_at
 from halation.render_layers.camera import measure_camera, read_header_camera, solve_camera
+from halation.render_layers.report import measure_field_of_view
 from halation.resources.sandbox import UNRESTRICTED
 from msgspec.structs import astuple
 from raycast import cast_rays
@@ -39,6 +40,21 @@ def rolled(camera: CameraModel) -> CameraModel:
     rows[0], rows[1] = (c * across - s * down) / WIDTH, (s * across + c * down) / HEIGHT
     rows[:2] += 0.5 * rows[2]
     return CameraModel(tuple(rows.ravel()))
+
+
+@pytest.mark.parametrize("camera", [CAMERA, off_center(CAMERA), rolled(CAMERA)])
+def test_the_field_of_view_lies_between_the_rays_of_opposite_edges(camera: CameraModel) -> None:
+    """As if the axis met the center, where it does not."""
+    rows = np.reshape(camera.rows, (3, 4))[:, :3].copy()
+    rows[:2] += np.subtract(0.5, camera.center)[:, None] * rows[2]
+    left, right, top, bottom = (
+        np.linalg.solve(rows, (*edge, 1.0)) for edge in ((0.0, 0.5), (1.0, 0.5), (0.5, 0.0), (0.5, 1.0))
+    )
+    angles = [
+        math.degrees(math.acos(a @ b / (np.linalg.norm(a) * np.linalg.norm(b))))
+        for a, b in ((left, right), (top, bottom))
+    ]
+    assert measure_field_of_view(camera) == pytest.approx(angles, rel=1e-6)
 
 
 def layers(path: Path) -> list[np.ndarray]:

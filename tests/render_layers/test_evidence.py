@@ -191,13 +191,14 @@ def test_without_motion_nothing_is_claimed() -> None:
     assert evidence.match_velocity_with_pictures(still, SEEN.normal, SEEN.normal) is None
 
 
+@pytest.mark.parametrize("light", [0.1, 1.0, 30.0])
 @pytest.mark.parametrize("sign", [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)])
-def test_two_pictures_tell_motion(sign: tuple[float, float]) -> None:
-    """A smooth pattern that moves by 3 to the right and 2 down from frame to frame."""
+def test_two_pictures_tell_motion(sign: tuple[float, float], light: float) -> None:
+    """A smooth pattern, dark or bright, that moves by 3 to the right and 2 down from frame to frame."""
     y, x = np.mgrid[0:HEIGHT, 0:WIDTH] + 0.0
 
     def picture(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        return np.stack([1.0 + np.sin(x / 3.0), 1.0 + np.cos(y / 4.0), 1.0 + np.sin((x + y) / 5.0)], axis=-1)
+        return light * np.stack([1.0 + np.sin(x / 3.0), 1.0 + np.cos(y / 4.0), 1.0 + np.sin((x + y) / 5.0)], axis=-1)
 
     stored = np.zeros((HEIGHT, WIDTH, 2)) + np.multiply((3.0, 2.0), sign)
     found = evidence.match_velocity_with_pictures(stored, picture(x - 3.0, y - 2.0), picture(x, y))
