@@ -165,6 +165,24 @@ def test_any_text_is_a_class_or_a_fault(text: str) -> None:
         assert str(fault)
 
 
+@pytest.mark.parametrize(
+    ("type", "default", "low", "high"),
+    [
+        ("float", "0.25", 0.0, 1.0),
+        ("float", "3", 0.0, 6.0),
+        ("float", "-3", -6.0, 6.0),
+        ("int", "1", 0.0, 8.0),
+        ("int", "20", 0.0, 40.0),
+        ("int", "-1", -8.0, 8.0),
+        ("vec2", "(3, 9)", -1.0, 1.0),
+    ],
+)
+def test_a_slider_without_ends_has_its_default_well_inside(type: str, default: str, low: float, high: float) -> None:
+    """Twice the default, at least 1, or the 8 steps of a whole number; below 0 only where the default is."""
+    value = glsl(f"vec4 f(vec4 image, {type} x // = {default}\n) {{ return image; }}").values["x"]
+    assert (value.low, value.high) == (low, high)
+
+
 @given(some.floats(-1e6, 1e6), some.floats(0, 1e6), some.floats(0, 1e6))
 def test_numbers_come_as_they_are_written(default: float, below: float, above: float) -> None:
     low, high = default - below, default + above
