@@ -166,3 +166,14 @@ def test_a_straight_line_is_as_wide_as_asked(run, width, scale):
     ids[:, 32:] = 1.0
     found = run(GeometryEdges(width=width), {"ids": ids}, scale=scale)[..., 0]
     np.testing.assert_allclose(found.sum(axis=1) / scale, width, atol=1e-4)
+
+
+@pytest.mark.parametrize("width", [5.0, 8.0, 13.0])
+def test_a_wide_line_along_a_fold_ends_round(run, width):
+    """As far from the nearest pixel of the fold as scipy measures; it fades out in the middle of the picture."""
+    y, x = np.mgrid[:24, :37]
+    depth = 1.0 / (1.0 + 0.02 * np.abs(x - 18) * np.clip((32.0 - y) / 20.0 - 0.3, 0.0, 1.0))
+    fold = run(GeometryEdges(width=1.0, depth_threshold=0.02, softness=0.5), {"depth": depth})[..., 0] >= 0.5
+    assert fold[:, 18].any() and not fold[-6:].any() and not np.delete(fold, 18, 1).any()
+    expected = np.clip(0.5 * width + 0.5 - distance_transform_edt(~fold), 0.0, 1.0)
+    np.testing.assert_allclose(run(GeometryEdges(width=width, depth_threshold=0.02, softness=0.5), {"depth": depth})[..., 0], expected, atol=1e-5)
