@@ -138,6 +138,14 @@ def choose_values(node: type[Node], random: np.random.Generator) -> dict[str, An
     return {name: value for name, value in chosen.items() if value is not None}
 
 
+def find_choices(id: str) -> dict[str, tuple[str, ...]]:
+    """All choices that a function knows, or else those of its node, by the name of their value."""
+    values, parameters = catalogue()[id].values, load_library().definitions[id].parameters
+    known = [each for each in parameters if each.name in values]
+    choices = {each.name: (*map(str, each.choices or values[each.name].choices),) for each in known}
+    return {name: words for name, words in choices.items() if words}
+
+
 def choose_value(value: Value, random: np.random.Generator) -> Any:
     """One value at random."""
     low = max(value.low, -4.0)

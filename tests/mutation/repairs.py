@@ -76,8 +76,8 @@ REPAIRS = (
     Repair(
         "code runs in a process that is watched",
         "app/cli/watchdog.py",
-        "if any(map(needs_watchdog, graphs)) and can_fork():",
-        "if not any(map(needs_watchdog, graphs)) and can_fork():",
+        "if any(map(needs_watchdog, graphs)) and not",
+        "if not any(map(needs_watchdog, graphs)) and not",
         "tests/cli/test_watchdog.py::test_code_that_ends_its_process",
     ),
     Repair(

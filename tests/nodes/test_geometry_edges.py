@@ -176,4 +176,8 @@ def test_a_wide_line_along_a_fold_ends_round(run, width):
     fold = run(GeometryEdges(width=1.0, depth_threshold=0.02, softness=0.5), {"depth": depth})[..., 0] >= 0.5
     assert fold[:, 18].any() and not fold[-6:].any() and not np.delete(fold, 18, 1).any()
     expected = np.clip(0.5 * width + 0.5 - distance_transform_edt(~fold), 0.0, 1.0)
-    np.testing.assert_allclose(run(GeometryEdges(width=width, depth_threshold=0.02, softness=0.5), {"depth": depth})[..., 0], expected, atol=1e-5)
+    np.testing.assert_allclose(
+        run(GeometryEdges(width=width, depth_threshold=0.02, softness=0.5), {"depth": depth})[..., 0],
+        expected,
+        atol=1e-5,
+    )

@@ -11,7 +11,7 @@ import numpy as np
 
 from .merge import screen
 from .pixels import Array, join, luminance_of, mix, smoothstep, straight
-from .places import cubic_weight, grid, pixels_at
+from .places import Edge, cubic_weight, grid, pixels_at
 from .tone import hue_of, natural_key, with_hue
 
 
@@ -62,7 +62,7 @@ def feedback(
     decay: float,
     mode: str,
     ceiling: float,
-    edge: str,
+    edge: Edge,
 ) -> tuple[Array, Array]:
     """The picture on the result of the frame before, which is turned, scaled, moved, faded and turned in hue."""
     height, width = image.shape[:2]
