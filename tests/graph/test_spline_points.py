@@ -10,6 +10,7 @@ from halation import document
 from halation.document import dumps, loads
 from halation.errors import DocumentError, GraphError
 from halation.graph import Expression, Graph, Key, Keys, Port, evaluate_at_frame, problems, value_at
+from halation.graph.scalars import scalar_fault
 from halation.nodes import RotoShape, catalogue, join_points, name_roto_shapes, split_points
 from halation.resources.sandbox import UNRESTRICTED
 from scipy.interpolate import PchipInterpolator
@@ -116,3 +117,22 @@ def test_keys_of_points_follow_a_renamed_node(graph: Graph) -> None:
     renamed = graph.rename("roto", "mask")
     assert set(renamed.keyed_points[Port("mask", "shapes.box.points")]) == {3}
     assert document.dumps(renamed.rename("mask", "roto")) == dumps(graph)
+
+
+@pytest.mark.parametrize("points", [2, 3, 40])
+@pytest.mark.parametrize("place", [0, 3, -1])
+def test_many_numbers_are_judged_as_few(points: int, place: int) -> None:
+    """As large as floats of 32 bits can be, and no larger."""
+    value, most = catalogue()["shape"].values["spline"], float(np.finfo(np.float32).max)
+    for number, fault in (
+        (most, None),
+        (-most, None),
+        (1.0001 * most, "too large for 32 bits"),
+        (-1.0001 * most, "too large for 32 bits"),
+        (float("inf"), "is not a finite number"),
+        (float("nan"), "is not a finite number"),
+    ):
+        numbers = [0.0] * 7 * points
+        numbers[place] = number
+        found = scalar_fault(value, tuple(numbers))
+        assert found is None if fault is None else fault in (found or "")
