@@ -119,6 +119,31 @@ def test_a_socket_is_colored_within_a_dark_rim_around_its_core(make_brush, kind:
     assert not hole or 0.4 < extents[2] / extents[1] < 0.5
 
 
+CORNERS: dict[Kind | None, str] = {
+    None: "circle", Kind.IMAGE: "circle", Kind.FIELD: "circle", Kind.VECTOR: "diamond", Kind.NUMBER: "square",
+    Kind.COLOR: "square", Kind.CAMERA: "triangle",
+}  # fmt: skip
+"""The shape of the sockets of each kind."""
+
+
+@pytest.mark.parametrize("kind", [*Kind, None])
+def test_kinds_differ_by_the_shape_of_their_sockets(make_brush, kind: Kind | None) -> None:
+    """Not by their color alone: a round shape has a middle only, a diamond has its corners beside and above it."""
+    brush = make_brush()
+    paint_node.paint_pin(brush, 10.0, 20.0, kind, 5)
+    points = np.subtract(drawn(brush).shapes[0].points, (26.0, 28.0))
+    corners = {(int(np.sign(round(x, 3))), int(np.sign(round(y, 3)))) for x, y in points}
+    assert (
+        corners
+        == {
+            "circle": {(0, 0)},
+            "diamond": {(-1, 0), (1, 0), (0, -1), (0, 1)},
+            "square": {(-1, -1), (1, 1)},
+            "triangle": {(-1, -1), (-1, 1), (1, 0)},
+        }[CORNERS[kind]]
+    )
+
+
 @pytest.mark.parametrize(("size", "expected"), [((200, 100), 2.0), ((100, 200), 0.5), ((64, 64), 1.0)])
 def test_a_thumbnail_keeps_its_shape_in_the_middle_of_its_place(make_brush, scene, size, expected) -> None:
     box = next(box for box in scene.boxes.values() if box.layout is not None and box.layout.picture)
