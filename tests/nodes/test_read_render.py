@@ -91,9 +91,11 @@ def test_depth_of_every_kind_comes_out_planar(renderer, tmp_path, kind, told):
 
 @pytest.mark.parametrize("space", ["world", "camera"])
 @pytest.mark.parametrize("told", [False, True], ids=["found", "chosen"])
-def test_normals_come_out_in_the_world(renderer, tmp_path, space, told):
+@pytest.mark.parametrize("packed", [False, True], ids=["signed", "from 0 to 1"])
+def test_normals_come_out_in_the_world(renderer, tmp_path, space, told, packed):
     data = scene()
     stored = data["normal"] if space == "world" else data["camera_normal"]
+    stored = 0.5 + 0.5 * stored if packed else stored
     path = write(tmp_path / "a.exr", {"RGB": COLOR, "N.XYZ": stored, "P.XYZ": data["position"]})
     (normal,) = shown(renderer, ReadRender(path=path, normal_is=space if told else "found"), "normal")
     assert np.abs(normal - data["normal"]).max() < 2e-5
