@@ -7,12 +7,14 @@ from dataclasses import fields
 from pathlib import Path
 
 import msgspec
+import pytest
 from halation import document
-from halation.document import records
+from halation.document import limits, records
 from halation.graph import Settings, problems
 from halation.resources.sandbox import UNRESTRICTED
 
-PAGE = (Path(__file__).parents[2] / "docs" / "format.md").read_text(encoding="utf-8")
+DOCS = Path(__file__).parents[2] / "docs"
+PAGE = (DOCS / "format.md").read_text(encoding="utf-8")
 
 
 def test_the_example_is_a_graph_in_the_canonical_layout() -> None:
@@ -35,3 +37,10 @@ def test_every_key_is_there() -> None:
     assert keys(records.InputRecord) | keys(records.OutputRecord) <= chapter("Inputs and outputs")
     assert keys(records.NodeRecord) <= chapter("Nodes")
     assert keys(records.GraphRecord) <= set(re.findall(r"`(\w+)`", PAGE.partition("## Settings")[0]))
+
+
+@pytest.mark.parametrize("name", [name for name, limit in vars(limits).items() if isinstance(limit, int)])
+def test_limits_are_those_that_the_manual_states(name: str) -> None:
+    page, limit = (DOCS / "security.md").read_text("utf-8"), vars(limits)[name]
+    spelled = {f"{limit:,}", *([f"{limit // 2**20} MB"] if limit % 2**20 == 0 else [])}
+    assert any(re.search(rf"(?<![\d,.]){text}(?![\d,.]\d)", page) for text in spelled), f"{name}: {limit:,}"
