@@ -64,6 +64,7 @@ def select_tests(path: Path, line: int) -> list[list[str]]:
     driving = list_driving_tests(path)
     if runners := choose_runners(path, line, tests):
         recorded = {name.partition("::")[0] for name in read_record()[1]}
+        runners += list_fresh_tests([test for test in tests if test in recorded])
         tests, driving = ([test for test in some if test not in recorded] for some in (tests, driving))
     quick = [*tests, *(f"--deselect={name}" for name in listed if name.partition("::")[0] in tests)] if tests else []
     pages = [PAGES] if path.suffix == ".py" else []
@@ -78,6 +79,11 @@ def choose_runners(path: Path, line: int, near: list[str]) -> list[str]:
     names = sorted(counts, key=lambda name: (places.get(name.partition("::")[0], FILES), counts[name]))
     ends = accumulate(seconds[name] for name in names)
     return [name for name, end in zip(names, ends, strict=True) if end - seconds[name] <= RUNNING_SECONDS]
+
+
+def list_fresh_tests(files: list[str]) -> list[str]:
+    """The tests of files that the record does not know, because they were written after it."""
+    return [name for file in files for name in _list_names(file) if name not in read_record()[1]]
 
 
 def list_tests(path: Path) -> list[str]:
@@ -157,6 +163,17 @@ def _list_test_files() -> tuple[Path, ...]:
 def _read_shaders() -> dict[str, str]:
     folder = ROOT / "shaders"
     return {str(file.relative_to(folder).with_suffix("")): file.read_text("utf-8") for file in folder.rglob("*.glsl")}
+
+
+@cache
+def _list_names(file: str) -> tuple[str, ...]:
+    """The tests of a file, those of its classes too."""
+    body = ast.parse((ROOT / file).read_text("utf-8")).body
+    groups = [(f"{file}::", body)] + [
+        (f"{file}::{each.name}::", each.body) for each in body if isinstance(each, ast.ClassDef)
+    ]
+    found = [(head, each) for head, part in groups for each in part if isinstance(each, ast.FunctionDef)]
+    return tuple(f"{head}{each.name}" for head, each in found if each.name.startswith("test_"))
 
 
 def _room_of(test: Path) -> str:

@@ -96,6 +96,16 @@ def test_notes_of_processes_become_a_record(monkeypatch: pytest.MonkeyPatch, tmp
     assert seconds == {"a.py::one": 0.75, "b.py::two": 1.0} and blocks[5] == {0} and blocks[6] == {0, 1}
 
 
+def test_tests_that_are_newer_than_the_record_are_known(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    file = "tests/graph/test_edits.py"
+    monkeypatch.setattr(reach, "RECORD", tmp_path / "none.npz")
+    clear()
+    every = choice.list_fresh_tests([file])
+    assert {f"{file}::test_mute_and_what_passes_through", f"{file}::TestSet::test_refuses"} <= {*every}
+    keep(monkeypatch, tmp_path, p1=f"T{every[0]}\n5\nS0.5\n")
+    assert choice.list_fresh_tests([file]) == every[1:]
+
+
 def test_a_line_is_shown_to_the_tests_that_run_its_block(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(reach, "RECORD", tmp_path / "none.npz")
     assert reach.list_runners(WALK, 1) == {} and choice.choose_runners(WALK, 1, []) == []
