@@ -11,7 +11,7 @@ from halation.errors import InputError
 from halation.presets import sample
 from halation.render_layers.analysis import analyze_render
 from halation.render_layers.conventions import DepthKind
-from halation.render_layers.mattes import read_id_map
+from halation.render_layers.mattes import IdMap, read_id_map
 from halation.render_layers.naming import Role
 from halation.render_layers.overview import summarize_render
 from halation.render_layers.render import is_render, read_render
@@ -90,5 +90,10 @@ def test_what_is_where():
     assert found.ids.shape == (270, 480) and found.ids.dtype == np.uint32
     assert set(found.names.values()) == set(matte.ids)
     assert found.names[found.id_at(0.5, 0.5)] in matte.ids and found.id_at(1.5, 0.5) == found.id_at(-0.1, 0.5) == 0
+    corners = {(0.0, 0.0): (0, 0), (1.0 - 1e-9, 0.0): (0, 479), (0.0, 1.0 - 1e-9): (269, 0), (0.5, 0.25): (67, 240)}
+    assert all(found.id_at(*at) == found.ids[pixel] for at, pixel in corners.items())
+    outside = [(1.0, 0.5), (0.5, 1.0), (-1e-9, 0.5), (0.5, -1e-9)]
+    whole = IdMap(np.full_like(found.ids, 7), {})
+    assert [whole.id_at(*at) for at in outside] == [0] * 4 and whole.id_at(0.0, 0.0) == 7
     with pytest.raises(InputError, match="is no cryptomatte"):
         read_id_map(NEON, "Depth", sandbox=UNRESTRICTED)
