@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 import stat
-import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
@@ -16,6 +15,7 @@ from pathlib import Path
 
 from ..resources.heartbeat import BEACON_FILE
 from ..resources.machine import has_memory_limit
+from .watched_copy import go_on_in_copy, has_copies
 
 _CODE_TYPES = b'"glsl"', b'"isf"'
 """Text in each file of a graph with code nodes."""
@@ -35,24 +35,22 @@ def begin_early(arguments: Sequence[str]) -> int | None:
     """Begin a render whose graph is a file. An exit code, if a copy of this process has done the work, else None."""
     if not _renders_here(arguments) or (graph := _find_graph(arguments)) is None:
         return None
-    if not os.environ.get(BEACON_FILE) and any(name in graph for name in _CODE_TYPES):
-        from .watched_copy import go_on_in_copy
-
-        if (code := go_on_in_copy(as_json="--json" in arguments)) is not None:
-            return code
+    may_need_watchdog = not os.environ.get(BEACON_FILE) and any(name in graph for name in _CODE_TYPES)
+    if may_need_watchdog and (code := go_on_in_copy(as_json="--json" in arguments)) is not None:
+        return code
     from ..renderer.opengl.warming import warm
 
     for name in _LIBRARIES:
         with suppress(ImportError):  # not every Python is built with all of them
             import_module(name)
-    warm()
+    with suppress(RuntimeError):  # no thread can be started: the command says so
+        warm()
     return None
 
 
 def _renders_here(arguments: Sequence[str]) -> bool:
     return (
-        sys.platform == "linux"
-        and hasattr(os, "pidfd_open")
+        has_copies()
         and arguments[:1] == ["render"]
         and not has_memory_limit()
         and not any(word.startswith(_ELSEWHERE) for word in arguments)

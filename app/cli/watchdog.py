@@ -28,6 +28,7 @@ from .watched_copy import (
     CHECK_INTERVAL,
     begin_late_watchdog,
     enter_copy,
+    has_copies,
     make_heartbeat,
     wait_for_end,
     watch_copy,
@@ -97,7 +98,7 @@ def can_fork() -> bool:
 
     A thread that has ended is listed for a moment longer.
     """
-    if sys.platform != "linux" or not hasattr(os, "pidfd_open") or DEVICE_MODULE in sys.modules:
+    if not has_copies() or DEVICE_MODULE in sys.modules:
         return False
     limit = time.monotonic() + _LINGERING
     while (

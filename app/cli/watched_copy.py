@@ -22,6 +22,11 @@ CHECK_INTERVAL = 0.05
 with Mesa 22.3."""
 
 
+def has_copies() -> bool:
+    """True if this system has all that a watched copy takes."""
+    return sys.platform == "linux" and hasattr(os, "pidfd_open") and hasattr(os, "memfd_create")
+
+
 class Judge(Protocol):
     """Says when a process has to end, and why it has ended."""
 
@@ -78,10 +83,14 @@ class _Watch:
 def go_on_in_copy(*, as_json: bool) -> int | None:
     """Copy this process, which has one thread and has printed nothing. None in the copy; here its exit code, in time.
 
-    What ends the copy is reported here. The copy can be watched from then on: `begin_late_watchdog`.
+    What ends the copy is reported here. The copy can be watched from then on: `begin_late_watchdog`. Where the system
+    allows no other process, there is no copy, and this one goes on.
     """
-    watchdog = LateWatchdog()
-    process = os.fork()
+    try:
+        watchdog = LateWatchdog()
+        process = os.fork()
+    except OSError:
+        return None
     if process == 0:
         enter_copy()
         _Watch.late = watchdog
