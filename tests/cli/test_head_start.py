@@ -28,10 +28,24 @@ else:
 """Prints who goes on, and whether the driver is being loaded."""
 
 
-def begin(folder: Path, *words: str, kind: str = "ramp") -> list[str]:
+NO_PROCESSES = """
+def refuse():
+    raise BlockingIOError("Resource temporarily unavailable")
+os.fork = refuse
+"""
+NO_THREADS = """
+import threading
+def refuse(thread):
+    raise RuntimeError("can't start new thread")
+threading.Thread.start = refuse
+"""
+
+
+def begin(folder: Path, *words: str, kind: str = "ramp", before: str = "") -> list[str]:
     path = folder / "graph.json"
     path.write_text(json.dumps({"halation": 1, "nodes": {"a": {"type": kind}}}))
-    command = [sys.executable, "-c", PROBE, *(str(path) if word == "GRAPH" else word for word in words)]
+    probe = PROBE.replace("first =", f"{before}\nfirst =")
+    command = [sys.executable, "-c", probe, *(str(path) if word == "GRAPH" else word for word in words)]
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
 
 
@@ -85,3 +99,9 @@ def test_a_graph_that_is_no_file_is_left_to_the_command(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "fifo.json")
     assert begin(tmp_path, "render", str(tmp_path / "fifo.json"), "-o", "out.exr") == ["alone False"]
     assert begin(tmp_path, "render", str(tmp_path), "-o", "out.json") == ["alone False"]
+
+
+@pytest.mark.parametrize(("kind", "before"), [("glsl", NO_PROCESSES), ("ramp", NO_THREADS)])
+def test_where_the_system_refuses_it_the_command_goes_on(tmp_path: Path, kind: str, before: str) -> None:
+    """It says itself what it lacks, if it does."""
+    assert begin(tmp_path, "render", "GRAPH", "-o", "out.exr", kind=kind, before=before) == ["alone True"]
