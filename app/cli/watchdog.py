@@ -27,6 +27,7 @@ from .signals import end_with_parent_thread, relay_requests
 from .watched_copy import (
     CHECK_INTERVAL,
     begin_late_watchdog,
+    count_threads,
     enter_copy,
     has_copies,
     make_heartbeat,
@@ -101,9 +102,7 @@ def can_fork() -> bool:
     if not has_copies() or DEVICE_MODULE in sys.modules:
         return False
     limit = time.monotonic() + _LINGERING
-    while (
-        count := len(list(Path("/proc/self/task").iterdir()))
-    ) > threading.active_count() and time.monotonic() < limit:
+    while (count := count_threads()) > threading.active_count() and time.monotonic() < limit:
         time.sleep(_LINGERING / 1000)
     return count == 1
 

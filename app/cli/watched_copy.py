@@ -27,6 +27,11 @@ def has_copies() -> bool:
     return sys.platform == "linux" and hasattr(os, "pidfd_open") and hasattr(os, "memfd_create")
 
 
+def count_threads() -> int:
+    """The threads of this process that the system lists, Python's and others."""
+    return len([*Path("/proc/self/task").iterdir()])
+
+
 class Judge(Protocol):
     """Says when a process has to end, and why it has ended."""
 
@@ -81,11 +86,13 @@ class _Watch:
 
 
 def go_on_in_copy(*, as_json: bool) -> int | None:
-    """Copy this process, which has one thread and has printed nothing. None in the copy; here its exit code, in time.
+    """Copy this process, which has printed nothing. None in the copy; here its exit code, in time.
 
     What ends the copy is reported here. The copy can be watched from then on: `begin_late_watchdog`. Where the system
-    allows no other process, there is no copy, and this one goes on.
+    allows no other process, or this one has threads, which would be missing, there is no copy, and this one goes on.
     """
+    if count_threads() > 1:
+        return None
     try:
         watchdog = LateWatchdog()
         process = os.fork()
