@@ -139,7 +139,6 @@ def watch_copy(process: int, judge: Judge, wait: Callable[[int, float], bool] = 
 
     Raises what `judge` finds, and KeyboardInterrupt if this process was asked to end.
     """
-    sys.stdout.flush()
     handle = os.pidfd_open(process)
     try:
         with relay_requests(process, is_copy=True) as requests:
