@@ -41,17 +41,17 @@ def copy_tree(target: Path) -> Path:
     return target
 
 
-def run_in_tree(tree: Path, *words: str, timeout: float = 600.0) -> subprocess.CompletedProcess[str]:
-    """Run this Python in the copy, whose packages it imports; the third-party libraries stay the same."""
+def import_from(tree: Path) -> dict[str, str]:
+    """The environment in which Python imports the packages of the copy; the third-party libraries stay the same."""
     hook = tree.parent / f"{tree.name}-path"
     hook.mkdir(exist_ok=True)
     folders = {package: folder for folder, package in PACKAGES.items()}
     (hook / "sitecustomize.py").write_text(_FINDER.format(folders=folders, root=str(tree)), encoding="utf-8")
+    return {**os.environ, "PYTHONPATH": str(hook)}
+
+
+def run_in_tree(tree: Path, *words: str, timeout: float = 600.0) -> subprocess.CompletedProcess[str]:
+    """Run this Python in the copy."""
     return subprocess.run(
-        [sys.executable, *words],
-        cwd=tree,
-        env={**os.environ, "PYTHONPATH": str(hook)},
-        capture_output=True,
-        text=True,
-        timeout=timeout,
+        [sys.executable, *words], cwd=tree, env=import_from(tree), capture_output=True, text=True, timeout=timeout
     )

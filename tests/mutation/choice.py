@@ -31,6 +31,9 @@ RUNNING_SECONDS = 60.0
 SLOW_FILES = 6
 """The test files whose slow tests see a fault too: those of twelve files take two minutes."""
 
+NEAREST = 2
+"""The files of tests that see a fault before all others: most faults are noticed there, and few files are read soon."""
+
 DRIVING_FILES = 3
 """The most test files that drive the real editor: each takes half a minute."""
 
@@ -59,16 +62,28 @@ def select_tests(path: Path, line: int) -> list[list[str]]:
         names = list_scripted_nodes(path, line)
         return [[*SCRIPT_TESTS, "-k", " or ".join(sorted({*names, path.stem}))]] if names else [[*SCRIPT_TESTS]]
     tests = list_tests(path)
-    listed = [name for name in LIST.read_text("utf-8").split() if name.partition("::")[0] in tests]
-    slow = [name for name in listed if name.partition("::")[0] in tests[:SLOW_FILES]]
+    listed = [name for name in LIST.read_text("utf-8").split() if file_of(name) in tests]
+    slow = [name for name in listed if file_of(name) in tests[:SLOW_FILES]]
+    nearest = {*tests[:NEAREST]}
     driving = list_driving_tests(path)
     if runners := choose_runners(path, line, tests):
-        recorded = {name.partition("::")[0] for name in read_record()[1]}
+        recorded = {file_of(name) for name in read_record()[1]}
         runners += list_fresh_tests([test for test in tests if test in recorded])
         tests, driving = ([test for test in some if test not in recorded] for some in (tests, driving))
-    quick = [*tests, *(f"--deselect={name}" for name in listed if name.partition("::")[0] in tests)] if tests else []
+    first = [test for test in tests if test in nearest]
+    first += [name for name in (*runners, *slow) if file_of(name) in nearest - {*first}]
+    tests = [test for test in tests if test not in nearest]
+    near = [*dict.fromkeys(file_of(name) for name in runners)][:SLOW_FILES]
+    runners, slow = ([name for name in some if file_of(name) not in nearest] for some in (runners, slow))
+    kin, far = ([name for name in runners if (file_of(name) in near) is wanted] for wanted in (True, False))
+    quick = [*tests, *(f"--deselect={name}" for name in listed if file_of(name) in tests)] if tests else []
     pages = [PAGES] if path.suffix == ".py" else []
-    return [words for words in (runners, quick, pages, slow, driving) if words]
+    return [words for words in (first, kin, pages, far, quick, slow, driving) if words]
+
+
+def file_of(name: str) -> str:
+    """The file of a test."""
+    return name.partition("::")[0]
 
 
 def choose_runners(path: Path, line: int, near: list[str]) -> list[str]:
@@ -76,7 +91,7 @@ def choose_runners(path: Path, line: int, near: list[str]) -> list[str]:
     if path.suffix != ".py" or not (counts := list_runners(path, line)):
         return []
     places, seconds = {test: place for place, test in enumerate(near)}, read_record()[1]
-    names = sorted(counts, key=lambda name: (places.get(name.partition("::")[0], FILES), counts[name]))
+    names = sorted(counts, key=lambda name: (places.get(file_of(name), FILES), counts[name]))
     ends = accumulate(seconds[name] for name in names)
     return [name for name, end in zip(names, ends, strict=True) if end - seconds[name] <= RUNNING_SECONDS]
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import json
-import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,9 +11,10 @@ import pytest
 from import_graph import ROOT
 from mutation import reach, run
 from mutation.choice import FUNCTIONS, list_scripted_nodes, list_tests, select_tests
-from mutation.mutants import Mutant, list_mutants
+from mutation.mutants import list_mutants
 from mutation.repairs import REPAIRS
-from mutation.run import draw_mutants, list_files, raise_floors, rate, room_of, try_mutant
+from mutation.run import draw_mutants, list_files, raise_floors
+from mutation.trials import room_of
 
 PYTHON = '''"""Text with 1 + 1."""
 __all__ = ["size"]
@@ -120,58 +120,6 @@ def test_a_function_of_scripts_is_tried_by_the_nodes_that_need_it() -> None:
     lines = (ROOT / path).read_text("utf-8").splitlines()
     assert list_scripted_nodes(path, 1) == []
     assert list_scripted_nodes(path, lines.index("SEARCH_LENGTHS = " + lines[11].partition(" = ")[2]) + 1) == ["smaa"]
-
-
-@pytest.mark.parametrize(("code", "fails_again", "was_noticed"), [(1, True, True), (0, False, False)])
-def test_a_fault_is_seen_by_the_tests_and_taken_out_again(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, code: int, fails_again: bool, was_noticed: bool
-) -> None:
-    path, seen = Path("app/graph/walk.py"), list[str]()
-    (tmp_path / path).parent.mkdir(parents=True)
-    (tmp_path / path).write_text("a < b")
-
-    def play(tree: Path, *words: str, timeout: float) -> subprocess.CompletedProcess[str]:
-        if "a.py::test" in words:
-            is_fault = (tree / path).read_text() == "a <= b"
-            return subprocess.CompletedProcess(words, int(is_fault and fails_again), "", "")
-        seen.append((tree / path).read_text())
-        return subprocess.CompletedProcess(words, code, "FAILED a.py::test\n" if code else "", "")
-
-    monkeypatch.setattr(run, "run_in_tree", play)
-    trial = try_mutant(tmp_path, Mutant(path, 2, 3, "<="), set())
-    assert {*seen} == {"a <= b"} and (tmp_path / path).read_text() == "a < b"
-    assert trial.was_noticed is was_noticed and ("FAILED a.py::test" in trial.words) is was_noticed
-    assert rate([trial]) == {"graph": (int(was_noticed), 1)}
-
-
-def test_a_test_that_fails_without_the_fault_notices_nothing(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    path = Path("app/graph/walk.py")
-    (tmp_path / path).parent.mkdir(parents=True)
-    (tmp_path / path).write_text("a < b")
-
-    def play(tree: Path, *words: str, timeout: float) -> subprocess.CompletedProcess[str]:
-        fails = "--deselect=a.py::test" not in words
-        return subprocess.CompletedProcess(words, int(fails), "FAILED a.py::test - no\n" if fails else "", "")
-
-    monkeypatch.setattr(run, "run_in_tree", play)
-    broken = set[str]()
-    assert not try_mutant(tmp_path, Mutant(path, 2, 3, "<="), broken).was_noticed
-    assert broken == {"a.py::test"}
-
-
-def test_a_test_that_fails_once_notices_nothing(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    path = Path("app/graph/walk.py")
-    (tmp_path / path).parent.mkdir(parents=True)
-    (tmp_path / path).write_text("a < b")
-
-    def play(tree: Path, *words: str, timeout: float) -> subprocess.CompletedProcess[str]:
-        fails = "--deselect=a.py::test" not in words and "a.py::test" not in words
-        return subprocess.CompletedProcess(words, int(fails), "FAILED a.py::test - no\n" if fails else "", "")
-
-    monkeypatch.setattr(run, "run_in_tree", play)
-    broken = set[str]()
-    assert not try_mutant(tmp_path, Mutant(path, 2, 3, "<="), broken).was_noticed
-    assert broken == {"a.py::test"} and (tmp_path / path).read_text() == "a < b"
 
 
 def test_floors_rise_where_enough_was_tried_and_never_fall() -> None:
