@@ -34,7 +34,7 @@ def read_state(still: StillEditor) -> dict[str, str]:
         "selected": sorted(session.selection),
         "active": session.active,
         "place": "/".join(session.place),
-        "views": {side: str(session.views.find_port(side)) for side in "AB"},
+        "views": {side: str(session.views.find_port(side)) for side in ("A", "B")},
         "frame": session.time.frame,
         "clipboard": imgui.get_clipboard_text(),
         "typing": imgui.get_io().want_text_input,
@@ -95,21 +95,22 @@ def _flatten(value: Any, way: str) -> Iterator[tuple[str, str]]:
     elif isinstance(value, Mapping):
         for name, part in value.items():
             yield from _flatten(part, f"{way}.{name}" if way else str(name))
-    elif (text := _spell(value)) is not None:
-        yield way, text
+    else:
+        yield way, _spell(value)
 
 
-def _spell(value: Any) -> str | None:
-    """A plain value in few letters; None for what is none."""
+def _spell(value: Any) -> str:
+    """A value in few letters."""
     if value is None or isinstance(value, bool | int | str):
         return str(value).replace("\n", "/")
     if isinstance(value, float):
         return f"{value:.3g}"
     if isinstance(value, tuple | list):
-        parts = [_spell(part) for part in value]
-        return f"({' '.join(str(part) for part in parts)})"
+        return f"({' '.join(_spell(part) for part in value)})"
+    if isinstance(value, Mapping):
+        return _spell([f"{name}: {_spell(part)}" for name, part in value.items()])
     if isinstance(value, set | frozenset):
-        return "{" + " ".join(sorted(str(_spell(part)) for part in value)) + "}"
+        return _spell(sorted(_spell(part) for part in value))
     if isinstance(value, msgspec.Struct):
         return _spell(tuple(getattr(value, name) for name in value.__struct_fields__))
     return str(value) if type(value).__name__ in ("Port", "ElementId", "PosixPath") else type(value).__name__

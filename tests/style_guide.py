@@ -60,7 +60,8 @@ def make_guide() -> Palette:
         return red, green, blue
 
     names = [name for name in Palette.__struct_fields__ if isinstance(getattr(DARK, name), tuple)]
-    kinds, categories = ({key: make("") for key in part} for part in (DARK.kinds, DARK.categories))
+    kinds = {kind: make("") for kind in DARK.kinds}
+    categories = {name: make("") for name in DARK.categories}
     return Palette("dark", **{name: make(name) for name in names}, kinds=kinds, categories=categories)
 
 
