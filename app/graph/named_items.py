@@ -13,7 +13,7 @@ from halation.nodes import ItemKind, Items, ItemSet, NamedItem, Plain, Scalar, V
 from msgspec import structs
 
 from ..errors import GraphError
-from .names import did_you_mean, make_printable, name_fault
+from .names import did_you_mean, make_printable, name_fault, name_several
 from .scalars import coerce_scalar, describe_scalar, describe_type, scalar_fault
 from .spline_points import put_points
 
@@ -229,7 +229,7 @@ def find_item_faults(value: Value, setting: object) -> Iterator[tuple[tuple[str,
             yield from _find_object_faults(value, objects)
         return
     if len(items) > value.items.most:
-        yield (), f"{len(items)} {value.items.noun}s are too many: it takes at most {value.items.most}"
+        yield (), f"{len(items)} {name_several(value.items.noun)} are too many: it takes at most {value.items.most}"
         return  # what they name would take time with the square of their number
     for name, item in items.items():
         kind = value.items.by_name.get(item.kind)

@@ -89,5 +89,11 @@ def fresh_name(stem: str, used_names: Iterable[str]) -> str:
     return name
 
 
+def name_several(noun: str) -> str:
+    """More than one of them: "lights", "pairs of curves"."""
+    head, of, rest = noun.partition(" of ")
+    return f"{head}s{of}{rest}"
+
+
 def _add_article(noun: str) -> str:
     return f"an {noun}" if noun[0] in "aeiou" else f"a {noun}"

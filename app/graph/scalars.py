@@ -10,6 +10,7 @@ from halation.nodes import MAX_POINTS, ROWS, Scalar, Value, is_number
 
 from ..errors import UsageError
 from .frames import Pattern
+from .names import name_several
 
 _INT32 = 2**31
 """One above the largest int of GLSL."""
@@ -95,8 +96,8 @@ def describe_type(value: Value) -> str:
             return "a list of x, y for every point, at least two"
         case "items":
             assert value.items is not None
-            noun, kind = value.items.noun, value.items.kinds[0].name
-            return f'{noun}s by name, such as {{"{noun}_1": {{"kind": "{kind}"}}}}'
+            nouns, kind = name_several(value.items.noun), value.items.kinds[0].name
+            return f'{nouns} by name, such as {{"{kind}_1": {{"kind": "{kind}"}}}}'
         case "spline" | "stroke":
             return f"a list of points, each a list of x, y, {ROWS[value.type].words}"
         case "point":

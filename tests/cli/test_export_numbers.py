@@ -13,7 +13,7 @@ from exr_files import read
 from halation.compiler.knobs import Knob, Point
 from halation.export.package.curves import read_slot, write_slot
 from halation.export.package.parts import VariantSamples
-from halation.export.package.sampling import KnobSampler, Sample, Slot
+from halation.export.package.sampling import KnobSampler, Sample, Slot, is_irregular
 from halation.export.python.functions.coverage import known_normals, surfaces_of_pixels
 from halation.presets import paths
 
@@ -43,6 +43,47 @@ def test_what_is_far_from_a_pole_counts(is_table: bool) -> None:
     for reach in np.linspace(1.0, 10.0, 997):
         found = np.concatenate([read_slot(record, {"reach": reach}) for record in records])
         np.testing.assert_allclose(found, [1.0 / reach**2, np.exp(reach)], rtol=5e-3)
+
+
+def hash_of(x: float) -> float:
+    """A number between 0 and 1 that has nothing to do with those of its neighbors."""
+    return float(np.random.default_rng(round(x * 1e6)).random())
+
+
+@pytest.mark.parametrize(
+    ("first_jump", "last_jump", "most", "is_control"),
+    [
+        (0.0, 1.0, 60, False),  # everywhere: a sixteenth of the range says so
+        (0.8, 1.0, 129, False),
+        (0.3, 0.32, 129, True),  # so few of 256 steps of a slider are wrong
+        (2.0, 2.0, 40, True),
+    ],
+)
+def test_a_knob_that_moves_sorted_tables_is_soon_given_up(first_jump, last_jump, most, is_control) -> None:
+    """Where a table jumps with every value there is no curve: to look on would plan the graph hundreds of times."""
+    taken: list[float] = []
+
+    def take(point: Point) -> Sample:
+        taken.append(x := point["size"])
+        jumping = hash_of(x) if first_jump <= x <= last_jump else 0.5
+        return Sample(None, 0, (Slot(np.array([1.0 + x, jumping]), is_whole=False, is_table=True),))  # pyright: ignore[reportArgumentType]
+
+    samples = KnobSampler(take, {}, Knob("size", 0.5, 0.0, 1.0)).sample_range()
+    assert is_irregular(samples) is not is_control and len(taken) <= most
+    if is_control:
+        assert (min(samples), max(samples)) == (0.0, 1.0)
+
+
+def test_a_frame_is_planned_once() -> None:
+    """Passes change with every frame of a burned-in timecode; beside a whole number there is no other value."""
+    taken: list[float] = []
+
+    def take(point: Point) -> Sample:
+        taken.append(x := point["frame"])
+        return Sample(None, round(x), (Slot(np.zeros(1), is_whole=False),))  # pyright: ignore[reportArgumentType]
+
+    KnobSampler(take, {}, Knob("frame", 1, 1, 120, is_whole=True)).sample_range()
+    assert sorted(taken) == list(range(1, 121))
 
 
 @pytest.mark.parametrize("reach", [0.02, 3.0, 8.5])

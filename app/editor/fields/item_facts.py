@@ -9,6 +9,7 @@ from typing import Any
 from halation.nodes import Items, ItemSet
 from imgui_bundle import icons_fontawesome_6 as icons
 
+from ...graph.names import name_several
 from ...language.translation import mark, mark_plural, translate, translate_plural
 
 ICONS: Mapping[str, str] = MappingProxyType(
@@ -52,6 +53,11 @@ _COUNTS: Mapping[str, tuple[str, str, str]] = MappingProxyType(
     {
         "light": (mark("no lights"), *mark_plural("{count} light", "{count} lights")),
         "shape": (mark("no shapes"), *mark_plural("{count} shape", "{count} shapes")),
+        "light group": (mark("no light groups"), *mark_plural("{count} light group", "{count} light groups")),
+        "pair of curves": (
+            mark("no pairs of curves"),
+            *mark_plural("{count} pair of curves", "{count} pairs of curves"),
+        ),
         "stroke": (mark("no strokes"), *mark_plural("{count} stroke", "{count} strokes")),
     }
 )
@@ -61,7 +67,8 @@ _COUNTS: Mapping[str, tuple[str, str, str]] = MappingProxyType(
 def describe_count(items: ItemSet, noun: str) -> str:
     """The number of items in words: `no lights`, `1 light`, `3 lights`."""
     count = len(items)
-    nothing, singular, plural = _COUNTS.get(noun, (f"no {noun}s", f"{{count}} {noun}", f"{{count}} {noun}s"))
+    nouns = name_several(noun)
+    nothing, singular, plural = _COUNTS.get(noun, (f"no {nouns}", f"{{count}} {noun}", f"{{count}} {nouns}"))
     return translate_plural(singular, plural, count) if count else translate(nothing)
 
 

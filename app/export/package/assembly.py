@@ -226,8 +226,8 @@ def _write_surfaces(plan: Plan, phase: Phase) -> list[Record]:
 def _describe_held(axes: Sequence[VariantAxis], irregular_names: set[str]) -> dict[str, str]:
     """Why controls keep their values in the package: a sentence for each, by its name."""
     reasons = {find_control_name(axis.knob): "it changes passes, as others do already" for axis in axes}
-    reasons |= dict.fromkeys(sorted(irregular_names), "it moves outlines, and sorted tables of them are baked")
-    return {name: f"keeps its value: {reason}" for name, reason in reasons.items() if name != FRAME}
+    reasons |= dict.fromkeys(irregular_names, "it moves outlines, and sorted tables of them are baked")
+    return {name: f"keeps its value: {reasons[name]}" for name in sorted(reasons) if name != FRAME}
 
 
 def _describe_skipped(axes: Sequence[VariantAxis]) -> list[str]:

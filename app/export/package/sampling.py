@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Callable, Mapping
 
 import numpy as np
@@ -42,6 +43,9 @@ LEAST_SCALE = 1e-4
 
 MOST_JUMPS = 4
 """Jumps of tables along a knob up to which it is a control: so many of 256 steps of a slider are wrong. A choice."""
+
+LEAST_PART = 1 / 32
+"""The smallest part of a range after which it is asked whether a knob can still be a control. A choice."""
 
 BESIDE = 1e-4
 """How far beside a special value a sample is taken, as a part of the range: less than any slider moves. A choice."""
@@ -159,6 +163,8 @@ class KnobSampler(Struct):
             self._replace_special(places)
         for low, high in itertools.pairwise(places):
             self._refine(low, high)
+            if self._is_hopeless(low, high):
+                break
         return dict(sorted(self.samples.items()))
 
     def _take(self, x: float) -> Sample | None:
@@ -199,7 +205,7 @@ class KnobSampler(Struct):
         sample = self._add(middle)
         if first is None or last is None or sample is None:
             return
-        if sample.structure not in (first.structure, last.structure):
+        if sample.structure not in (first.structure, last.structure) and not self.knob.is_whole:
             self._take_beside(middle, is_below=False)
             sample = self.samples[middle]
             if high - low <= (self.knob.high - self.knob.low) * SMALLEST_STEP:
@@ -207,7 +213,17 @@ class KnobSampler(Struct):
         if first.structure == last.structure == sample.structure and self._is_straight(first, sample, last):
             return
         self._refine(low, middle)
-        self._refine(middle, high)
+        if not self._is_hopeless(low, middle):
+            self._refine(middle, high)
+
+    def _is_hopeless(self, low: float, high: float) -> bool:
+        """True if the samples up to `high` are irregular already: then the knob is no control, whatever follows.
+
+        Large parts of the range are asked alone, since to look through all samples takes time too.
+        """
+        if self.knob.is_whole or high - low < (self.knob.high - self.knob.low) * LEAST_PART:
+            return False
+        return is_irregular(dict(sorted(self.samples.items())), until=high)
 
     def _is_straight(self, first: Sample, middle: Sample, last: Sample) -> bool:
         """True if all numbers of the middle sample lie between those of the others."""
@@ -226,16 +242,17 @@ def _jumps(first: Sample, last: Sample) -> bool:
     )
 
 
-def is_irregular(samples: Mapping[float, Sample]) -> bool:
+def is_irregular(samples: Mapping[float, Sample], until: float = math.inf) -> bool:
     """True if a table jumps again and again along a knob of fractions, as the sorted outlines of a text that is scaled.
 
-    Between two such tables there is nothing, and the nearest one is that of another value.
+    Between two such tables there is nothing, and the nearest one is that of another value. Jumps count up to `until`,
+    beyond which samples may lie too far apart to tell a jump from a bend.
     """
     jumps, scales = 0, _TableScales()
     for sample in samples.values():
         scales.add(sample)
     for (x, a), (y, b), (z, c) in zip(*(list(samples.items())[at:] for at in range(3)), strict=False):
-        if a.structure == b.structure == c.structure:
+        if z <= until and a.structure == b.structure == c.structure:
             share = (y - x) / (z - x)
             jumps += any(
                 _measure_bend(*slots, scales.find(b, number), share) > JUMP
