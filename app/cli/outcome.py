@@ -54,6 +54,15 @@ def catch_faults(command: Callable[..., int]) -> Callable[..., int]:
     return run
 
 
+_KINDS = (
+    ("int range", "a whole number"),
+    ("int", "a whole number"),
+    ("float range", "a number"),
+    ("float", "a number"),
+)
+"""What the parser of the command line calls kinds of numbers, longer names first, and what everybody does."""
+
+
 def report_failure(fault: BaseException, as_json: bool) -> int:
     """Print an error, also as JSON if `as_json`, and return its exit code."""
     if isinstance(fault, BrokenPipeError):
@@ -102,6 +111,8 @@ def _describe(fault: BaseException) -> tuple[str, int, str]:
         context = getattr(fault, "ctx", None)
         command = context.command_path if context else "halation"
         text = str(format_message()).strip().rstrip(".")
+        for kind, words in _KINDS:
+            text = text.replace(f"is not a valid {kind}", f"is not {words}")
         hint = "; pictures are bound with -i NAME=FILE" if "extra argument" in text and " render" in command else ""
         return "UsageError", USAGE, f"{text[:1].lower()}{text[1:]}{hint}; see {command} --help"
     if is_memory_scarce():  # then Python and libraries raise anything, such as errors of syntax

@@ -16,6 +16,24 @@ if TYPE_CHECKING:
 _Word = TypeVar("_Word", bound=str)
 
 
+_TEXTS = "-k", "--select"
+"""Options whose text may be empty: then they choose everything."""
+
+
+def check_words(words: Sequence[str]) -> None:
+    """Raise UsageError for a word that is empty, as a variable of the shell without a value leaves it.
+
+    A file without a name would be the current folder: `halation fmt "$FILE"` would rewrite all graphs in it.
+    """
+    for number, (before, word) in enumerate(zip(("", *words), words, strict=False), 1):
+        option, equals, text = word.partition("=")
+        if not word and before not in _TEXTS:
+            place = f"what follows {before}" if before.startswith("-") else f"word {number} of the command"
+            raise UsageError(f"{place} is empty: has a variable of the shell no value?")
+        if word.startswith("--") and equals and not text and option not in _TEXTS:
+            raise UsageError(f"{word}: what follows = is empty: has a variable of the shell no value?")
+
+
 def parse_assignments(items: Sequence[str], flag: str) -> dict[str, str]:
     """Texts by name from `name=text`, in order. Raises UsageError for other texts and for a repeated name."""
     texts: dict[str, str] = {}

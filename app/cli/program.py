@@ -18,6 +18,7 @@ from ..errors import RenderError
 from ..resources.machine import has_memory_limit, memory_limit
 from ..version import VERSION
 from .outcome import EXIT_CODES, catch_faults, flush_output, report_failure
+from .parsing import check_words
 
 _VISIBLE = (
     "edit",
@@ -172,7 +173,7 @@ def run(arguments: Sequence[str]) -> int:
             raise MemoryError(
                 f"{memory / 2**20:.0f} MiB of memory are too few (ulimit -v): allow {_LEAST_MEMORY >> 20} MiB at least"
             )
-        words = tuple(arguments)
+        check_words(words := tuple(arguments))
         code = get_command(app).main(list(words), prog_name="halation", standalone_mode=False, obj=words)
     except SystemExit as end:  # so click ends completions (0), and when the program that read its help has ended (1)
         code = report_failure(BrokenPipeError(), as_json) if end.code else 0

@@ -7,6 +7,7 @@ files itself. Both refuse what is no regular file: a FIFO or a device would be w
 from __future__ import annotations
 
 import difflib
+import errno
 import hashlib
 import os
 import re
@@ -118,6 +119,8 @@ def read_bytes(path: str | Path, sandbox: Sandbox, count: int = -1) -> bytes:
 def _check_regular(path: str | Path, status: os.stat_result) -> None:
     if kind := find_special_kind(status.st_mode):
         raise InputError(f"{make_path_printable(path)}: is {kind}, not a file: name a regular file")
+    if stat.S_ISDIR(status.st_mode):  # Linux opens one for reading, and Python would name its descriptor
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
 
 
 def _describe_missing(path: Path) -> str:

@@ -132,9 +132,15 @@ def test_what_is_no_archive(cli, base: Path, tmp_path: Path) -> None:
     (tmp_path / "text.zip").write_text("text")
     with zipfile.ZipFile(tmp_path / "empty.zip", "w") as archive:
         archive.writestr("other", "")
-    for name, words in (("text.zip", "is damaged"), ("empty.zip", "is no archive that"), ("none.zip", "none.zip")):
+    for name, words in (
+        ("text.zip", "is damaged"),
+        ("empty.zip", "is no archive that"),
+        ("none.zip", "none.zip: cannot be read"),
+    ):
         result = cli("cache", "--import", tmp_path / name)
         assert result.code != 0 and words in result.err and "Traceback" not in result.err
+    result = cli("cache", "--import", tmp_path)
+    assert (result.code, result.err) == (4, f"halation: {tmp_path}: cannot be read: Is a directory\n")
 
 
 @pytest.mark.parametrize("method", [zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])

@@ -287,3 +287,48 @@ def test_what_libraries_print_is_not_beside_the_sentence(tmp_path):
 def test_a_picture_without_its_option_says_how_it_is_bound(cli):
     said = cli("render", "soft_bloom", "shot.exr")
     assert said.code == 2 and "pictures are bound with -i NAME=FILE" in said.err
+
+
+# --- words without a value ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("fmt", ""), "word 2 of the command"),
+        (("check", "", "--strict"), "word 2 of the command"),
+        (("render", "look.json", "-o", ""), "what follows -o"),
+        (("render", "look.json", "-o", "x.png", "--root="), "--root=: what follows ="),
+        (("render", "look.json", "-i", "", "-o", "x.png"), "what follows -i"),
+        (("gallery", "-o", ""), "what follows -o"),
+        (("export", "look.json", "--to", "glsl", "-o", ""), "what follows -o"),
+        (("", "look.json"), "word 1 of the command"),
+    ],
+)
+def test_a_variable_of_the_shell_without_a_value(cli, tmp_path, monkeypatch, words, said):
+    """The empty name of a file would be the current folder, in which `fmt` would rewrite every graph."""
+    monkeypatch.chdir(tmp_path)
+    text = '{"halation":1,"nodes":{},"links":{},"inputs":{},"outputs":{}}'
+    (tmp_path / "look.json").write_text(text)
+    result = cli(*words)
+    assert result.code == 2 and result.err == f"halation: {said} is empty: has a variable of the shell no value?\n"
+    assert [path.name for path in tmp_path.iterdir()] == ["look.json"] and (tmp_path / "look.json").read_text() == text
+
+
+@pytest.mark.parametrize("words", [("-k", ""), ("--select", ""), ("--select=",)])
+def test_an_empty_choice_of_cases_is_all_of_them(cli, tmp_path, words):
+    (tmp_path / "a.suite.toml").write_text('graph = "look.json"\n')
+    assert cli("test", tmp_path, "--list", *words).err == cli("test", tmp_path, "--list").err
+
+
+@pytest.mark.parametrize(
+    ("words", "kind"),
+    [
+        (("render", "x", "--frame", "1.5"), "a whole number"),
+        (("submit", "x", "--chunk", "many"), "a whole number"),
+        (("render", "x", "--scale", "half"), "a number"),
+        (("render", "x", "--timeout", "soon"), "a number"),
+    ],
+)
+def test_a_word_that_is_no_number(fails, words, kind):
+    assert f"'{words[-2]}': '{words[-1]}' is not {kind}; see halation" in fails(2, *words)

@@ -82,7 +82,11 @@ def import_cache(path: Path, device: Device, *, sandbox: Sandbox) -> int:
     base = find_base_folder()
     if base is None:
         raise UsageError(f"{path}: cannot be imported: the driver keeps no cache here")
-    with open_file(path, sandbox) as file:
+    try:
+        file = open_file(path, sandbox)
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from error
+    with file:
         try:
             with ZipFile(file) as archive:
                 return _import_members(path, archive, base, CacheOwner.of_device(device))
