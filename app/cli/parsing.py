@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 _Word = TypeVar("_Word", bound=str)
 
 
-_TEXTS = "-k", "--select"
-"""Options whose text may be empty: then they choose everything."""
+_TEXTS = "-k", "--select", "--view", "--display", "--look", "--colorspace"
+"""Options whose text may be empty: then they choose everything, or nothing."""
 
 
 def check_words(words: Sequence[str]) -> None:
