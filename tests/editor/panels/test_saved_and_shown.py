@@ -70,4 +70,3 @@ def test_a_folder_that_no_program_shows_is_on_the_clipboard(
         assert imgui.get_clipboard_text() == ("before" if is_shown else str(folder))
         assert len(still.editor.log.entries) - messages == (0 if is_shown else 1)
         assert is_shown or str(folder) in still.editor.log.entries[-1].sentence
-
