@@ -71,9 +71,14 @@ def use_guide() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         for module in (context, brush, still_editor):
             patch.setattr(module, "PALETTES", {"dark": make_guide()})
-        brush.make_canvas_colors.cache_clear()
+        _forget_colors()
         yield
-    brush.make_canvas_colors.cache_clear()
+    _forget_colors()
+
+
+def _forget_colors() -> None:
+    for made in (brush.make_canvas_colors, brush.make_node_palette):
+        made.cache_clear()
 
 
 def name_color(color: int) -> str:

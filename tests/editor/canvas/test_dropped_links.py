@@ -1,4 +1,4 @@
-"""Where a dragged link is let go says what is linked: a socket, all that are called alike, or a node that is to come."""
+"""Where a dragged link is let go says what is linked: a socket, all that are called alike, or nothing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What asks for a file writes it there, and what no program shows can be pasted: the answers of dialogs, run as such."""
+"""What asks for a file writes it there, and a folder that no program shows can be pasted."""
 
 from __future__ import annotations
 
