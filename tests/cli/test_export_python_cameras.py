@@ -151,3 +151,20 @@ def test_a_camera_of_a_file_that_moves_is_refused(tmp_path: Path) -> None:
     graph["nodes"]["solved"]["values"] = {"path": str(tmp_path / "shot.#.exr"), "missing": "hold"}
     with pytest.raises(GraphError, match="node 'solved': its camera is read at several frames"):
         export_output(load_graph(tmp_path / "graph.json", graph), "velocity", tmp_path / "no.py")
+
+
+def test_depth_is_how_far_places_lie_in_front_of_the_camera() -> None:
+    """A dot product with the axis; none behind it, none in its plane, and none where renderers write the background."""
+    eye, target = (1.0, 2.0, 3.0), (4.0, 6.0, 3.0)
+    axis = np.array([0.6, 0.8, 0.0])
+    matrix = cameras.camera(eye, target, 35.0, 36.0, "z", 40, 30)
+    along = np.array([-1e3, -1.0, 0.0, 1e-3, 1.0, 7.5, 9e8, 1.1e9, 1e10])
+    aside = np.array([0.8, -0.6, 0.5])
+    places = np.array(eye) + along[:, None] * axis + 0.25 * aside
+    found = cameras.depth_from_position(places[None], matrix)[0, :, 0]
+    expected = np.where((along > 0.0) & (along < 1e9), along, 1e10)
+    sure = along != 0.0
+    np.testing.assert_allclose(found[sure], expected[sure], rtol=1e-9, atol=1e-9)
+    straight = np.array([[0.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]])
+    in_plane = np.array([[[0.0, 3.0, -2.0], [0.0, 0.0, 0.0], [np.nan, 1.0, 1.0], [np.inf, 0.0, 0.0]]])
+    assert (cameras.depth_from_position(in_plane, straight) == 1e10).all()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,8 @@ import pytest
 from conftest import Run
 from halation import document
 from halation.custom_nodes import CustomNode
+from halation.custom_nodes.isf.header import IsfInput
+from halation.custom_nodes.isf.inputs import is_position, make_isf_value, make_uniform
 from halation.errors import InputError, ShaderError
 from halation.graph import Output, Port
 from halation.nodes import Kind
@@ -317,3 +320,21 @@ def test_it_lives_among_other_nodes(run: Run) -> None:
     graph = graph.add_output("more", Output(Kind.IMAGE, 4)).connect(Port("up", "out"), Port("outputs", "more"))
     made = run(graph, {"inputImage": PICTURE}, output="more")
     assert close(made[..., :3], PICTURE[..., :3] * 0.5, 1e-5) and close(made[..., 3], 0.5)
+
+
+BOUNDS = (-0.01, 0.0, 0.25, 1.0, 1.01)
+RANGES = [(low, high) for low in product(BOUNDS, repeat=2) for high in product(BOUNDS, repeat=2)]
+
+
+def test_what_the_file_says_is_what_the_shader_gets() -> None:
+    """A point within the picture, ends included, is a place of the node, whose rows run from the top; others are
+    numbers, with the range of the file or -1 to 1. Either way the shader gets the numbers of the file."""
+    ordered = [(low, high) for low, high in RANGES if low[0] <= high[0] and low[1] <= high[1]]
+    for low, high in [*ordered, ((), ()), ((), (1.0, 1.0)), ((0.0, 0.0), ())]:
+        entry = IsfInput("spot", "point2D", default=(0.25, 0.125), low=low, high=high)
+        value = make_isf_value(entry, "spot")
+        is_place = bool(low and high) and all(0.0 <= number <= 1.0 for number in (*low, *high))
+        assert is_position(entry) is is_place is value.handle, entry
+        assert make_uniform(entry, value.default, True) == (0.25, 0.125)
+        if not is_place:
+            assert (value.low, value.high) == (min(low or (-1.0,)), max(high or (1.0,)))

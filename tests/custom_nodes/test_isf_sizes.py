@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from fractions import Fraction
 
 import pytest
 from halation.custom_nodes.isf.sizes import MAX_DEPTH, SizeError, read_size
@@ -90,6 +91,26 @@ def test_formulas_agree_with_python(tree: Tree) -> None:
 )
 def test_formulas(text: str, pixels: int) -> None:
     assert read_size(text).pixels(VALUES) == pixels
+
+
+@given(some.integers(1, 10**7), some.integers(0, 4), some.integers(1, 10**6), some.integers(-3, 3))
+def test_lengths_that_are_whole_are_not_cut(digits: int, places: int, factor: int, nudge: int) -> None:
+    """The product of decimals, as fractions have it: doubles that come out just below it mean the same length.
+
+    A thousandth of a pixel below is one pixel less.
+    """
+    decimal = f"{digits / 10**places:.{places}f}"
+    exact = Fraction(digits, 10**places) * factor + Fraction(nudge, 1000)
+    assume(exact < 10**5)
+    text = f"{decimal} * {factor} + {nudge} / 1000" if nudge >= 0 else f"{decimal} * {factor} - {-nudge} / 1000"
+    assert read_size(text).pixels(VALUES) == max(1, math.floor(exact))
+
+
+@pytest.mark.parametrize("length", [2, 3, 100, 1920, 10**6, 10**8])
+def test_a_length_is_whole_within_a_part_of_itself(length: int) -> None:
+    """What is wrong grows with the length, and so does what is forgiven: a billionth of it."""
+    half, twice = (f"{length} - {length} * {part!r}" for part in (0.5e-9, 2.5e-9))
+    assert read_size(half).pixels(VALUES) == length and read_size(twice).pixels(VALUES) == length - 1
 
 
 @pytest.mark.parametrize(

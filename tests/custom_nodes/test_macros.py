@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+import random
 from collections.abc import Callable
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -222,3 +225,39 @@ def test_a_signature_does_not_depend_on_conditions() -> None:
     text = "vec4 g(vec4 image) { return image; }\n#if 0\nvec4 f(vec4 image) { return image; }\n#endif"
     with pytest.raises(CodeFault, match="line 3: the signature of 'f'"):
         node_type(Code("glsl", text))
+
+
+def random_condition(chance: random.Random, depth: int) -> tuple[str, int]:
+    """A condition with brackets around each part, and its number by numpy's integers of 32 bits."""
+    if depth == 0 or chance.random() < 0.1:
+        number = chance.choice((chance.randrange(0, 40), chance.randrange(0, 2**31)))
+        return str(number), number
+    if chance.random() < 0.2:
+        sign, (text, number) = chance.choice("-!~"), random_condition(chance, depth - 1)
+        of = np.int32(number)
+        return f"{sign} ( {text} )", int({"-": -of, "!": not number, "~": ~of}[sign])
+    (left, a), (right, b) = (random_condition(chance, depth - 1) for _ in range(2))
+    sign = chance.choice(("+", "-", "*", "/", "%", "<<", ">>", "<", ">", "<=", ">=", "==", "!=", "&", "|", "^"))
+    x, y = np.int32(a), np.int32(b)
+    if sign in ("<<", ">>"):
+        y = np.int32(b & 31)
+    calls = {
+        "+": np.add, "-": np.subtract, "*": np.multiply, "<<": np.left_shift, ">>": np.right_shift, "<": np.less,
+        ">": np.greater, "<=": np.less_equal, ">=": np.greater_equal, "==": np.equal, "!=": np.not_equal,
+        "&": np.bitwise_and, "|": np.bitwise_or, "^": np.bitwise_xor, "%": np.fmod,
+    }  # fmt: skip
+    if sign == "/":
+        number = 0 if b == 0 else math.trunc(Fraction(a, b))
+    else:
+        number = 0 if sign == "%" and b == 0 else int(calls[sign](x, y))
+    return f"( {left} ) {sign} ( {right} )", int(np.int64(number).astype(np.int32))
+
+
+@pytest.mark.filterwarnings("ignore:overflow encountered:RuntimeWarning")
+@pytest.mark.parametrize("seed", range(20))
+def test_conditions_are_numpys_of_32_bits(seed: int) -> None:
+    """Sums, products and shifts wrap, division rounds towards zero, and a remainder has the sign of what is divided."""
+    chance = random.Random(seed)
+    for depth in (1, 1, 1, 1, 2, 2, 3, 4):
+        text, number = random_condition(chance, depth)
+        assert evaluate_condition(text.split(), 1) == number, text

@@ -257,3 +257,14 @@ def test_an_endless_file_is_refused() -> None:
         pytest.skip("no such device here")
     with pytest.raises(DocumentError, match="is a device"):
         load(zero, sandbox=UNRESTRICTED)
+
+
+@pytest.mark.parametrize("length", [1, 38, 39, 40, 41, 42, 200])
+@pytest.mark.parametrize("head", ['{"x": [', '{"halation": 1,\n"x": ['])
+def test_the_word_before_a_missing_comma_is_quoted(head: str, length: int) -> None:
+    """As it stands in its own line; of more than 40 letters the last 37."""
+    word = "".join(str(at % 10) for at in range(1, length + 1))
+    shown = word if length <= 40 else "..." + word[-37:]
+    column = len(head.rpartition("\n")[2]) + length
+    place = f"(line {1 + head.count(chr(10))}, column {column})"
+    assert f"closing bracket is missing after {shown} {place}" in str(fault(f"{head}{word} true]}}"))

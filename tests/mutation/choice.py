@@ -19,7 +19,7 @@ from pathlib import Path
 
 from changes import TESTS, covers, list_helpers
 from import_graph import MODULES, ROOT, links, name_of, targets
-from mutation.reach import list_runners, read_record
+from mutation.reach import is_outside_functions, list_runners, read_record
 from selection import LIST
 
 FILES = 12
@@ -64,14 +64,15 @@ def select_tests(path: Path, line: int) -> list[list[str]]:
     tests = list_tests(path)
     listed = [name for name in LIST.read_text("utf-8").split() if file_of(name) in tests]
     slow = [name for name in listed if file_of(name) in tests[:SLOW_FILES]]
-    nearest = {*tests[:NEAREST]}
+    nearest = dict.fromkeys(tests[:NEAREST])
     driving = list_driving_tests(path)
     if runners := choose_runners(path, line, tests):
         recorded = {file_of(name) for name in read_record()[1]}
         runners += list_fresh_tests([test for test in tests if test in recorded])
         tests, driving = ([test for test in some if test not in recorded] for some in (tests, driving))
-    first = [test for test in tests if test in nearest]
-    first += [name for name in (*runners, *slow) if file_of(name) in nearest - {*first}]
+    is_outside = path.suffix == ".py" and is_outside_functions(path, line)  # what a constant changes, was not recorded
+    first = [test for test in (nearest if is_outside else tests) if test in nearest]
+    first += dict.fromkeys(name for name in (*runners, *slow) if file_of(name) in nearest.keys() - {*first})
     tests = [test for test in tests if test not in nearest]
     near = [*dict.fromkeys(file_of(name) for name in runners)][:SLOW_FILES]
     runners, slow = ([name for name in some if file_of(name) not in nearest] for some in (runners, slow))

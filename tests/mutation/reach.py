@@ -155,6 +155,11 @@ def read_record() -> tuple[list[str], dict[str, float], dict[int, set[int]]]:
     return names, dict(zip(names, seconds, strict=True)), blocks
 
 
+def is_outside_functions(path: Path, line: int) -> bool:
+    """Whether a line runs when its module is imported, which nobody notes."""
+    return not any(first <= line <= last for first, last, _ in _read_blocks(path))
+
+
 def list_runners(path: Path, line: int) -> dict[str, int]:
     """The tests that run a line, and how many blocks each runs: those of its innermost block.
 

@@ -121,6 +121,7 @@ def test_a_line_is_shown_to_the_tests_that_run_its_block(monkeypatch: pytest.Mon
         "tests/near.py::head": 1,
         "tests/some.py::both": 2,
     }
+    assert reach.is_outside_functions(WALK, 1) and not reach.is_outside_functions(WALK, inner_first)
     assert {*reach.list_runners(WALK, 1)} == {"tests/far.py::all", "tests/near.py::head", "tests/some.py::both"}
     assert choice.choose_runners(WALK, first, ["tests/near.py"]) == [
         "tests/near.py::head", "tests/some.py::both", "tests/far.py::all",

@@ -6,10 +6,11 @@ from itertools import product
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 from halation.nodes import PaintTool
 from halation.nodes.filter import paint
-from halation.nodes.filter._brush_paths import boxes_meet, grow_box
+from halation.nodes.filter._brush_paths import boxes_meet, find_patch, grow_box
 from halation.nodes.input import text
 
 NEAR, FAR = (0.0, 0.0, 10.0, 10.0), (50.0, 50.0, 60.0, 60.0)
@@ -86,3 +87,25 @@ def test_boxes_meet_where_they_have_a_place_in_common() -> None:
         others: Any = [SimpleNamespace(box=(90, 90, 95, 95)), SimpleNamespace(box=second)]
         assert text._meets_any(letter, others) is overlap, "letters that touch may be drawn together"  # pyright: ignore
     assert grow_box((1.0, 2.0, 3.0, 4.0), 0.5, 0.25) == (0.5, 1.75, 3.5, 4.25)
+
+
+@pytest.mark.parametrize("overscan", [0, 7])
+@pytest.mark.parametrize("seed", range(30))
+def test_a_patch_holds_what_the_strokes_reach_of_the_picture(seed: int, overscan: int) -> None:
+    """Every pixel of the picture and its overscan that a box touches, and none beyond; None if there is none."""
+    chance, size = np.random.default_rng(seed), (300, 200)
+    corner = chance.integers((-400, -300), (600, 500), (2, 2))
+    boxes = [(*at, *(at + chance.integers(1, 150, 2))) for at in corner.astype(float)]
+    whole = np.zeros((1200, 1600), bool)  # from (-600, -400)
+    for x0, y0, x1, y1 in boxes:
+        whole[int(y0) + 400 : int(y1) + 400, int(x0) + 600 : int(x1) + 600] = True
+    picture = np.zeros_like(whole)
+    picture[400 - overscan : 600 + overscan, 600 - overscan : 900 + overscan] = True
+    paths: Any = [SimpleNamespace(box=box) for box in boxes]
+    patch = find_patch(paths, size, overscan)
+    held = np.zeros_like(whole)
+    if patch is not None:
+        (x, y), (width, height) = patch.origin, patch.size
+        held[y + 400 : y + 400 + height, x + 600 : x + 600 + width] = True
+    assert not (held & ~picture).any() and not (whole & picture & ~held).any()
+    assert patch is None or (patch.size[0] > 0 and patch.size[1] > 0)

@@ -108,3 +108,16 @@ def test_broken_pixels_become_finite_and_stay_alone(run):
     suns = np.full((40, 60, 4), (3e38, 1.0, 1.0, 1.0), np.float32)
     bright = run(RimLight(color=(3e38, 1.0, 1.0, 1.0), intensity=4.0), {"image": suns, **inputs})
     assert np.isfinite(bright).all() and (bright[..., 0] == 65504.0).any()
+
+
+@pytest.mark.parametrize("angle", [0.0, 30.0, -120.0])
+def test_without_a_camera_one_looks_along_the_axis(run, angle):
+    """Normals in the picture's own axes: what turns away is 1 - z, and the side is that of (x, y)."""
+    normal = np.random.default_rng(3).normal(size=(12, 14, 3))
+    normal[..., 2] = np.abs(normal[..., 2])
+    normal /= np.linalg.norm(normal, axis=2, keepdims=True)
+    node = RimLight(power=2.0, focus=1.0, angle=angle)
+    found = run(node, {"image": np.zeros((12, 14, 4)), "normal": normal}, output="rim")[..., 0]
+    across = normal[..., :2] / np.linalg.norm(normal[..., :2], axis=2, keepdims=True)
+    towards = across @ (np.cos(np.radians(angle)), np.sin(np.radians(angle)))
+    np.testing.assert_allclose(found, (1.0 - normal[..., 2]) ** 2 * (0.5 + 0.5 * towards), atol=2e-6)

@@ -144,3 +144,12 @@ def test_a_damaged_graph_says_where():
 def test_an_empty_graph_has_nothing_to_paste():
     with pytest.raises(GraphError, match="nothing to paste: copy nodes"):
         paste_part(chain(1), Graph().add("x", Gain()).remove("x"), {})
+
+
+@pytest.mark.parametrize("state", [True, False, None])
+def test_a_copy_is_folded_if_the_original_is(state):
+    graph = pin_places(chain(3))
+    nodes = {**graph.ui["nodes"], "n1": {**graph.ui["nodes"]["n1"], "collapsed": state}}
+    after, (copy, other) = moved(replace(graph, ui={**graph.ui, "nodes": nodes}), "n1", "n2")
+    assert after.ui["nodes"][copy].get("collapsed", False) is (state is True)
+    assert "collapsed" not in after.ui["nodes"][other]
