@@ -69,6 +69,7 @@ def whole(engine: Renderer, graph: Graph, port: Port = IMAGE) -> np.ndarray:
         other.close()
 
 
+@pytest.mark.large
 def test_while_a_value_is_dragged_only_what_is_seen_is_computed(preview, engine, monkeypatch):
     request_preview(preview, chain(), bindings=BINDINGS)
     settle(preview)
