@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import configparser
+import os
 import re
 import subprocess
 import sys
@@ -18,6 +19,7 @@ from halation.cli import edit
 from halation.cli.declarations import list_commands
 from halation.cli.man_pages import write_man_pages
 from halation.cli.program import app
+from halation.desktop import installation
 from halation.errors import DeviceError
 from halation.nodes import Kind
 from halation.resources.sandbox import UNRESTRICTED
@@ -184,3 +186,27 @@ def test_a_manual_page_has_all_that_the_help_has(cli):
         command = list_commands()["-".join(words)] if words else get_command(app)
         shown = [item for item in command.params if item.name != "help" and not getattr(item, "hidden", False)]
         assert all(" ".join((item.help or "").split()) in text for item in shown), name
+
+
+def test_a_desktop_reads_anew_what_was_written_and_what_was_removed(monkeypatch, tmp_path):
+    """Its own programs are run with their folders each time, and a folder that is not there is not told to any."""
+    programs, folder, notes = tmp_path / "bin", tmp_path / "share", tmp_path / "notes"
+    programs.mkdir()
+    parts = {"update-desktop-database": "applications", "update-mime-database": "mime"}
+    for name in (*parts, "gtk-update-icon-cache"):
+        (programs / name).write_text(f'#!/bin/sh\necho "$(basename "$0") $*" >> {notes}\n')
+        (programs / name).chmod(0o755)
+    monkeypatch.setenv("PATH", f"{programs}{os.pathsep}{os.environ['PATH']}")
+    files = {"applications/a.desktop": b"1", "mime/packages/a.xml": b"2"}
+    expected = sorted(f"{name} {folder / part}" for name, part in parts.items())
+    for act in (lambda: installation.install(folder, files), lambda: installation.remove(folder, files)):
+        act()
+        assert sorted(notes.read_text().splitlines()) == expected
+        notes.unlink()
+
+
+def test_only_pictures_that_few_desktops_show_get_thumbnails():
+    """Those of the formats of light; freedesktop's own thumbnailers show PNG, JPEG and TIFF."""
+    files = desktop.desktop_entries(("halation",))
+    types = read_entry(files["thumbnailers/halation.thumbnailer"])["MimeType"].strip(";").split(";")
+    assert [kind for kind in types if kind.startswith("image/")] == ["image/x-exr", "image/vnd.radiance"]

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from halation.fit.likeness import LookLikeness, PixelLikeness, _measure_bands  # pyright: ignore
+from halation.fit.likeness import MAX_PIXELS, LookLikeness, PixelLikeness, _measure_bands, _spread  # pyright: ignore
 from halation.fit.results import measure_curvatures
 from halation.fit.search import FitSearch
 from halation.media.comparison.color_difference import to_lab
@@ -107,3 +107,30 @@ def test_slopes_are_those_of_a_polynomial(point: tuple[float, ...]) -> None:
     assert all((at >= 0.0).all() and (at <= 1.0).all() for at in seen)
     wholes = {float(at[2]) for at in seen[:6]}
     assert wholes == {here[2], max(here[2] - 0.25, 0.0), min(here[2] + 0.25, 1.0)}
+
+
+def test_a_look_that_is_brighter_differs_by_that_in_tones_and_in_directions():
+    """CIE94 of equal colors is the difference of lightness, whatever the colors. Along a direction it is the part of it
+    that shows there: of many, a third of its square on average."""
+    lightness, shift = RANDOM.uniform(30, 60, (40, 50)), 7.0
+    found = LookLikeness(gray(lightness)).measure(gray(lightness + shift))
+    tones, slices, bands = found[:64], found[64:-10], found[-10:]
+    assert np.linalg.norm(tones) == pytest.approx(shift, rel=1e-6)
+    directions = np.random.default_rng(1).normal(size=(3, 24))
+    directions /= np.linalg.norm(directions, axis=0)
+    assert np.linalg.norm(slices) == pytest.approx(shift * np.sqrt(3.0 * np.mean(directions[0] ** 2)), rel=1e-6)
+    np.testing.assert_allclose(bands, 0.0, atol=1e-6)
+
+
+@pytest.mark.parametrize("count", [1, 5, MAX_PIXELS, MAX_PIXELS + 1, 2 * MAX_PIXELS, 3_333_333])
+def test_pixels_are_drawn_from_equal_parts(count):
+    """Each part has one, at a place that is even over it, as scipy says; few pixels are all there."""
+    places = _spread(count)
+    if count <= MAX_PIXELS:
+        assert places.tolist() == list(range(count))
+        return
+    part = count / MAX_PIXELS
+    starts = np.arange(MAX_PIXELS) * part
+    assert places.size == MAX_PIXELS and (places >= np.floor(starts)).all() and (places < starts + part).all()
+    if part > 50:
+        assert stats.kstest((places - starts) / part, "uniform").pvalue > 1e-3

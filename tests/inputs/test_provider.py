@@ -177,3 +177,15 @@ def test_another_config_encodes_a_file_in_another_way(tmp_path, monkeypatch):
     assert look_at(pictures, graph, path)[1] == "none"
     monkeypatch.setenv("OCIO", str(write_house(tmp_path)))
     assert look_at(pictures, graph, path)[1] == ""
+
+
+@pytest.mark.parametrize("dtype", np.typecodes["AllInteger"] + np.typecodes["Float"] + "?")
+def test_numbers_are_data_unless_they_are_those_of_files(dtype):
+    """Unsigned numbers of 8 and 16 bits are how files hold what a display shows; all others are what they say."""
+    graph, array = Graph(inputs={"beauty": Input(Kind.IMAGE)}), np.ones((2, 3, 4), dtype)
+    if np.dtype(dtype) in (np.uint8, np.uint16):
+        with pytest.raises(UsageError, match="encoded for a display"):
+            MediaProvider(sandbox=UNRESTRICTED).bind(graph, {"beauty": array})
+    else:
+        bound = MediaProvider(sandbox=UNRESTRICTED).bind(graph, {"beauty": array})["beauty"]
+        assert bound.in_memory and bound.pixels is array

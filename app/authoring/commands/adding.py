@@ -101,7 +101,7 @@ class AddMatte(EditCommand[str], frozen=True):
         path = document.graph.value(Port(self.id, "path"))
         node = make_node(document, "cryptomatte").with_values(path=path, **({"layer": self.kind} if self.kind else {}))
         x, y = document.positions[ElementId(self.id)]
-        return add_item(document, "cryptomatte", node, (x, y - ABOVE), None, True)
+        return add_item(document, "cryptomatte", node, (x, y - ABOVE))
 
 
 class InsertNode(EditCommand[str], frozen=True):
@@ -219,7 +219,9 @@ def type_stem(type_id: str) -> str:
     return "code" if type_id == coding.CODE else type_id.rpartition(".")[2]
 
 
-def add_item(document: OpenDocument, stem: str, item: Item, at: Place, link: Port | None, output: bool) -> Edited[str]:
+def add_item(
+    document: OpenDocument, stem: str, item: Item, at: Place, link: Port | None = None, output: bool = True
+) -> Edited[str]:
     """A node added under a free id like `stem`, linked with `link` if that is given, and selected."""
     id = document.graph.fresh_id(stem)
     graph = elements.with_places(document.graph.add(id, item), {ElementId(id): at})
