@@ -167,6 +167,7 @@ def test_the_sheet_names_its_cells(cli, graphs, tmp_path):
     [
         (("--set", "light.stops=1"), "nothing is swept: give several values"),
         ((), "nothing is swept"),
+        (("--set", "light.stops==max(1,2)"), "nothing is swept"),
         (("--set", "light.stosp=1,2"), "node 'light' has no value 'stosp'; did you mean 'stops'?"),
         (("--set", "fill.color=1,0,0,1,0,1,0,1"), "a color is 4 numbers, and 8 are given; separate several of"),
         (("--set", "fill.color=1,2,3"), "a color is 4 numbers, and 3 are given"),
