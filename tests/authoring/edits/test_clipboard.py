@@ -9,6 +9,7 @@ import pytest
 from halation.authoring.edits.clipboard import copy_elements, cut_part, paste_part, read_part
 from halation.authoring.edits.decor import add_comment, add_frame
 from halation.authoring.edits.element_id import ElementId
+from halation.authoring.edits.elements import entry
 from halation.authoring.edits.layout import pin_places, positions
 from halation.authoring.edits.naming import name_copy
 from halation.authoring.edits.routes import add_dot, routes
@@ -153,3 +154,14 @@ def test_a_copy_is_folded_if_the_original_is(state):
     after, (copy, other) = moved(replace(graph, ui={**graph.ui, "nodes": nodes}), "n1", "n2")
     assert after.ui["nodes"][copy].get("collapsed", False) is (state is True)
     assert "collapsed" not in after.ui["nodes"][other]
+
+
+@pytest.mark.parametrize("state", [True, False, None])
+def test_an_input_of_the_graph_is_folded_if_the_original_is(state):
+    """In a graph without one of that name and type, where the copy becomes one."""
+    source = pin_places(chain(1).add_input("dirt", Input(Kind.IMAGE)).connect(port("inputs.dirt"), port("n0.image")))
+    places = {**source.ui["nodes"], "inputs.dirt": {**source.ui["nodes"]["inputs.dirt"], "collapsed": state}}
+    source = replace(source, ui={**source.ui, "nodes": places})
+    part = read_part(copy_elements(source, ("inputs.dirt", "n0")), "", TOYS, sandbox=UNRESTRICTED)
+    after, _ = paste_part(Graph(), part, {})
+    assert entry(after, ElementId("inputs.dirt")).get("collapsed", False) is (state is True)
