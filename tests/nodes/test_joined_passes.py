@@ -93,14 +93,17 @@ def test_boxes_meet_where_they_have_a_place_in_common() -> None:
 @pytest.mark.parametrize("seed", range(30))
 def test_a_patch_holds_what_the_strokes_reach_of_the_picture(seed: int, overscan: int) -> None:
     """Every pixel of the picture and its overscan that a box touches, and none beyond; None if there is none."""
-    chance, size = np.random.default_rng(seed), (300, 200)
+    chance, size = np.random.default_rng(seed), (300, 200) if seed % 2 else (256, 128)
     corner = chance.integers((-400, -300), (600, 500), (2, 2))
+    if seed % 4 == 0:  # beside the picture, where steps and its edge meet
+        axis = int(chance.integers(2))
+        corner[:, axis] = size[axis] + chance.integers(0, 40, 2)
     boxes = [(*at, *(at + chance.integers(1, 150, 2))) for at in corner.astype(float)]
     whole = np.zeros((1200, 1600), bool)  # from (-600, -400)
     for x0, y0, x1, y1 in boxes:
         whole[int(y0) + 400 : int(y1) + 400, int(x0) + 600 : int(x1) + 600] = True
     picture = np.zeros_like(whole)
-    picture[400 - overscan : 600 + overscan, 600 - overscan : 900 + overscan] = True
+    picture[400 - overscan : 400 + size[1] + overscan, 600 - overscan : 600 + size[0] + overscan] = True
     paths: Any = [SimpleNamespace(box=box) for box in boxes]
     patch = find_patch(paths, size, overscan)
     held = np.zeros_like(whole)
