@@ -159,3 +159,31 @@ def test_sizes_keep_the_pixels_of_a_quarter_turn():
     for (source, target), (before, after) in sizes.items():
         node = Panorama(source=source, target=target, angle=180.0)
         assert node.output_size({"image": before}, before) == after
+
+
+@pytest.mark.parametrize("target", ["cube strip", "cube cross"])
+@pytest.mark.parametrize("scale", [1.0, 0.73, 0.01, 2.5])
+@pytest.mark.parametrize("height", [2, 37, 101, 200, 1027])
+def test_faces_of_cubes_are_whole_even_pixels_near_a_quarter_turn(target, scale, height):
+    """Cells of a cube are equal squares of an even side; none is more than a pixel off, where it is not the smallest."""
+    width, tall = Panorama(target=target, scale=scale).output_size({"image": (2 * height, height)}, (64, 64))
+    across, down = {"cube strip": (6, 1), "cube cross": (4, 3)}[target]
+    side = width // across
+    assert (width, tall) == (across * side, down * side) and side % 2 == 0 and side >= 2
+    assert abs(side - scale * height / 2.0) <= 1.0 or side == 2
+
+
+@pytest.mark.parametrize("target", ["fisheye", "little planet", "perspective", "lat-long"])
+@pytest.mark.parametrize("height", [40, 37, 331])
+def test_other_results_have_even_sides_near_a_quarter_turn(target, height):
+    """90 degrees of a lat-long picture are half of its height, and so many pixels of the result.
+
+    A view has them in its middle, where r = tan(a); the other results over their whole height.
+    """
+    pixels = height / np.pi  # of a radian
+    view = np.radians(70.0)
+    side = {"perspective": 2.0 * np.tan(view / 2.0), "lat-long": np.pi}.get(target, view) * pixels
+    node = Panorama(target=target, angle=70.0, aspect=1.5)
+    width, tall = node.output_size({"image": (2 * height, height)}, (64, 64))
+    assert width % 2 == 0 and tall % 2 == 0 and abs(tall - side) <= 1.0
+    assert abs(width - {"perspective": 1.5, "lat-long": 2.0}.get(target, 1.0) * side) <= 1.0
