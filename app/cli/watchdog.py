@@ -7,6 +7,7 @@ the process that uses it, so another process has to read the file and kill the f
 from __future__ import annotations
 
 import contextlib
+import mmap
 import os
 import signal
 import subprocess
@@ -40,9 +41,6 @@ if TYPE_CHECKING:
 
 DEVICE_MODULE = "halation.renderer.opengl.device"
 """Loaded where the process may have opened OpenGL, whose threads would be missing in a copy."""
-
-_LOADER_END = 127
-"""The exit code with which the loader of libraries (glibc's) ends a process that it has no memory for: no command's."""
 
 _LINGERING = 0.25
 """Seconds for which the system may still list a thread that has ended: measured, more than 20 ms in one of a thousand
@@ -210,20 +208,23 @@ def _finish(work: Callable[[], int], as_json: bool) -> int:
 def run_limited(work: Callable[[], int]) -> int:
     """Do all that a command does, under a limit of memory, in a copy of this process, and return the exit code.
 
-    Drivers and libraries end the process where they are refused memory. Then this one remains to say so: it raises
-    RenderError.
+    Drivers and libraries end the process where they are refused memory: by a signal, the loader of libraries with 127,
+    OpenBLAS with 1, as a command that fails does. Then this one remains to say so: it raises RenderError.
     """
     if not can_fork():
         return work()
+    has_ended = mmap.mmap(-1, 1)  # shared with the copy
     process = os.fork()
     if process == 0:
         end_with_parent_thread()
-        os._exit(work())
+        code = work()
+        has_ended[0] = True
+        os._exit(code)
     with relay_requests(process) as requests:
         code = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
     if code < 0 and requests:
         raise KeyboardInterrupt
-    if code < 0 or code == _LOADER_END:
+    if not has_ended[0]:
         raise explain_memory_limit(name_signal(-code) if code < 0 else f"code {code}")
     return code
 

@@ -90,14 +90,27 @@ def test_every_command(tmp_path: Path, words, mebibytes):
     check_end(tmp_path, words, mebibytes)
 
 
-def test_the_loader_of_libraries_ends_a_process_without_a_signal():
-    """Where a thread has no memory for its own variables, glibc prints ABORT and ends the process with 127."""
-    code = "from halation.cli import program; program.run = lambda words: 127; print(program.run_process([]))"
+@pytest.mark.parametrize("code", [127, 1, 0])
+def test_a_library_that_ends_the_process_leaves_a_sentence(code: int):
+    """Without memory the loader of libraries prints ABORT and ends the process with 127; OpenBLAS ends it with 1."""
+    words = f"import os; from halation.cli import program; program.run = lambda words: os._exit({code})"
     ended = subprocess.run(
-        [sys.executable, "-P", "-c", code], capture_output=True, text=True, timeout=60, preexec_fn=limit(4000)
-    )
+        [sys.executable, "-P", "-c", f"{words}; print(program.run_process([]))"],
+        capture_output=True, text=True, timeout=60, preexec_fn=limit(4000),
+    )  # fmt: skip
     assert ended.stdout == "1\n"
-    assert ended.stderr.startswith("halation: the driver ended the process (code 127), as drivers do without enough")
+    assert ended.stderr.startswith(
+        f"halation: the driver ended the process (code {code}), as drivers do without enough"
+    )
+
+
+@pytest.mark.parametrize("code", [0, 1, 5, 127])
+def test_a_limited_command_keeps_its_code(code: int):
+    words = f"from halation.cli import program; program.run = lambda words: {code}; print(program.run_process([]))"
+    ended = subprocess.run(
+        [sys.executable, "-P", "-c", words], capture_output=True, text=True, timeout=60, preexec_fn=limit(4000)
+    )
+    assert (ended.stdout, ended.stderr) == (f"{code}\n", "")
 
 
 def test_a_limited_command_can_be_interrupted(tmp_path: Path):

@@ -165,7 +165,7 @@ def test_sizes_keep_the_pixels_of_a_quarter_turn():
 @pytest.mark.parametrize("scale", [1.0, 0.73, 0.01, 2.5])
 @pytest.mark.parametrize("height", [2, 37, 101, 200, 1027])
 def test_faces_of_cubes_are_whole_even_pixels_near_a_quarter_turn(target, scale, height):
-    """Cells of a cube are equal squares of an even side; none is more than a pixel off, where it is not the smallest."""
+    """Cells of a cube are equal squares of an even side, a pixel off at most where it is not the smallest side."""
     width, tall = Panorama(target=target, scale=scale).output_size({"image": (2 * height, height)}, (64, 64))
     across, down = {"cube strip": (6, 1), "cube cross": (4, 3)}[target]
     side = width // across
