@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 
 _Word = TypeVar("_Word", bound=str)
 
-
 _TEXTS = "-k", "--select", "--view", "--display", "--look", "--colorspace"
 """Options whose text may be empty: then they choose everything, or nothing."""
 
@@ -29,9 +28,11 @@ def check_words(words: Sequence[str]) -> None:
         option, equals, text = word.partition("=")
         if not word and before not in _TEXTS:
             place = f"what follows {before}" if before.startswith("-") else f"word {number} of the command"
-            raise UsageError(f"{place} is empty: has a variable of the shell no value?")
-        if word.startswith("--") and equals and not text and option not in _TEXTS:
-            raise UsageError(f"{word}: what follows = is empty: has a variable of the shell no value?")
+        elif word.startswith("--") and equals and not text and option not in _TEXTS:
+            place = f"{word}: what follows ="
+        else:
+            continue
+        raise UsageError(f"{place} is empty: has a variable of the shell no value?")
 
 
 def parse_assignments(items: Sequence[str], flag: str) -> dict[str, str]:

@@ -131,9 +131,8 @@ def serve(libraries: list[str]) -> None:
         with suppress(ImportError):
             import_module(name)
     answers = os.fdopen(os.dup(1), "w")
-    sys.path[0] = str(
-        Path.cwd()
-    )  # as for `python -m pytest`, which processes that tests make by themselves look at too
+    # As for `python -m pytest`, which processes that tests make by themselves look at too.
+    sys.path[0] = str(Path.cwd())
     sys.modules["__main__"].__spec__ = find_spec("pytest.__main__")
     for line in sys.stdin:
         print(json.dumps(_run_copy(*json.loads(line))), file=answers, flush=True)
