@@ -17,9 +17,13 @@ from ..limits import check_memory
 from .open import describe_fault, describe_picture, open_picture
 from .wide_integers import scale_to_unit
 
-_BAND_ROWS = 256
-"""Rows of an EXR that two threads decode at a time: the largest block of scan lines (OpenEXR file layout, DWAB), and 16
-blocks of ZIP, so that threads seldom wait for each other."""
+_BLOCK_ROWS = 32
+"""Rows of an EXR that each thread decodes at a time: the largest block of scan lines but that of DWAB (OpenEXR file
+layout). Larger bands are not faster, and the allocator keeps them: T5 at 2560x1440 takes 290 MiB instead of 301 of 128
+rows for each thread."""
+
+_DWAB_ROWS = 256
+"""The same of DWAB, whose block is larger: two threads take 0.7 of the time of one."""
 
 _DECODED_AS = {"float16": "half", "uint8": "uint8", "uint16": "uint16", "uint32": "uint"}
 
@@ -83,7 +87,8 @@ def _read_block(
     """
     picture.seek_subimage(part, 0)
     spec = picture.spec()
-    height = _BAND_ROWS * max(1, oiio.get_int_attribute("threads") // 2)
+    is_dwab = spec.get_string_attribute("compression").startswith("dwab")
+    height = (_DWAB_ROWS if is_dwab else _BLOCK_ROWS) * max(1, oiio.get_int_attribute("threads"))
     if info.format != "openexr" or spec.tile_width or spec.height <= height:
         block = picture.read_image(part, 0, first, end, format)
         return None if block is None else np.asarray(block)
