@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import HalationError, rebuild_fault
 from ..resources.atomic_write import remove_files_of
-from ..resources.heartbeat import Watchdog, name_signal
+from ..resources.heartbeat import Watchdog, name_end
 from ..resources.interrupts import delay_interrupts
 from ..resources.machine import available_cores
 from .outcome import print_note
@@ -213,10 +213,10 @@ class _HelperPool:
             if process.returncode == 0:
                 self._reports.append(report)
             elif self._fault is None and helper.watchdog and process.returncode < 0:
-                self._fault = helper.watchdog.explain_signal(-process.returncode)
+                self._fault = helper.watchdog.explain_end(process.returncode)
                 self._stop()
             elif self._fault is None:
-                end = name_signal(-process.returncode) if process.returncode < 0 else f"code {process.returncode}"
+                end = name_end(process.returncode)
                 sentence = f"a process that renders was ended from outside ({end}): use --resume to go on"
                 self._fault = rebuild_fault({"message": sentence, **report.get("error", {})})
                 self._stop()

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..errors import DeviceError, HalationError
-from ..resources.heartbeat import BEACON_FILE, Watchdog, explain_memory_limit, name_signal
+from ..resources.heartbeat import BEACON_FILE, Watchdog, explain_memory_limit, name_end
 from ..resources.program import module_command
 from .outcome import flush_output, print_note, report_failure
 from .signals import end_with_parent_thread, relay_requests
@@ -188,12 +188,32 @@ def run_forked(
     watchdog = Watchdog(make_heartbeat(), timeout, memory, tries_first)
     sys.stdout.flush()
     sys.stderr.flush()
-    process = os.fork()
-    if process == 0:
+
+    def do_watched_work() -> int:
         os.environ.update(watchdog.environment)
         enter_copy()
-        os._exit(_finish(work, as_json))
-    return watch_copy(process, watchdog, wait)
+        return _finish(work, as_json)
+
+    process, has_finished = _start_copy(do_watched_work)
+    code = watch_copy(process, watchdog, wait)
+    if not has_finished():
+        raise watchdog.explain_end(code)
+    return code
+
+
+def _start_copy(work: Callable[[], int]) -> tuple[int, Callable[[], bool]]:
+    """Copy this process. The copy does the work, which raises nothing, and ends with its exit code.
+
+    Returns the number of the copy, and what says afterwards whether it has come to its own end: libraries end a process
+    with exit codes too, as the loader does with 127, and OpenBLAS with 1, as a command that fails does.
+    """
+    mark = mmap.mmap(-1, 1)  # shared with the copy
+    process = os.fork()
+    if process == 0:
+        code = work()
+        mark[0] = True
+        os._exit(code)
+    return process, lambda: bool(mark[0])
 
 
 def _finish(work: Callable[[], int], as_json: bool) -> int:
@@ -208,24 +228,23 @@ def _finish(work: Callable[[], int], as_json: bool) -> int:
 def run_limited(work: Callable[[], int]) -> int:
     """Do all that a command does, under a limit of memory, in a copy of this process, and return the exit code.
 
-    Drivers and libraries end the process where they are refused memory: by a signal, the loader of libraries with 127,
-    OpenBLAS with 1, as a command that fails does. Then this one remains to say so: it raises RenderError.
+    Drivers and libraries end the process where they are refused memory. Then this one remains to say so: it raises
+    RenderError.
     """
     if not can_fork():
         return work()
-    has_ended = mmap.mmap(-1, 1)  # shared with the copy
-    process = os.fork()
-    if process == 0:
+
+    def do_limited_work() -> int:
         end_with_parent_thread()
-        code = work()
-        has_ended[0] = True
-        os._exit(code)
+        return work()
+
+    process, has_finished = _start_copy(do_limited_work)
     with relay_requests(process) as requests:
         code = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
     if code < 0 and requests:
         raise KeyboardInterrupt
-    if not has_ended[0]:
-        raise explain_memory_limit(name_signal(-code) if code < 0 else f"code {code}")
+    if not has_finished():
+        raise explain_memory_limit(name_end(code))
     return code
 
 
@@ -267,5 +286,5 @@ def _watch(command: list[str], watchdog: Watchdog, text: str) -> int:
                     raise fault from None
                 continue
             if code < 0:
-                raise KeyboardInterrupt if requests else watchdog.explain_signal(-code)
+                raise KeyboardInterrupt if requests else watchdog.explain_end(code)
             return code

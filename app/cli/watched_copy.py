@@ -13,8 +13,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol
 
-from ..errors import DeviceError, HalationError, RenderError
-from ..resources.heartbeat import Watchdog, name_signal
+from ..errors import DeviceError, HalationError
+from ..resources.heartbeat import Watchdog, explain_end
 from .signals import end_with_parent_thread, ignore_interrupts, relay_requests
 
 CHECK_INTERVAL = 0.05
@@ -39,8 +39,8 @@ class Judge(Protocol):
         """The error to raise if the process has to end, else None."""
         ...
 
-    def explain_signal(self, number: int) -> HalationError:
-        """The error to raise after a signal has ended the process."""
+    def explain_end(self, code: int) -> HalationError:
+        """The error to raise after a signal or a library has ended the process: its exit code, or minus the signal."""
         ...
 
 
@@ -63,11 +63,10 @@ class LateWatchdog:
         watchdog = self._find()
         return watchdog.check(process) if watchdog else None
 
-    def explain_signal(self, number: int) -> HalationError:
-        """As `Watchdog.explain_signal`."""
-        if watchdog := self._find():
-            return watchdog.explain_signal(number)
-        return RenderError(f"the render was ended from outside ({name_signal(number)})")
+    def explain_end(self, code: int) -> HalationError:
+        """As `Watchdog.explain_end`."""
+        watchdog = self._find()
+        return watchdog.explain_end(code) if watchdog else explain_end(code)
 
     def _find(self) -> Watchdog | None:
         if self._watchdog is None:
@@ -151,5 +150,5 @@ def watch_copy(process: int, judge: Judge, wait: Callable[[int, float], bool] = 
     finally:
         os.close(handle)
     if code < 0:
-        raise KeyboardInterrupt if requests else judge.explain_signal(-code)
+        raise KeyboardInterrupt if requests else judge.explain_end(code)
     return code

@@ -60,27 +60,35 @@ class Watchdog:
             )
         return None
 
-    def explain_signal(self, number: int) -> HalationError:
-        """The error to raise after a signal has ended the process."""
-        name = name_signal(number)
+    def explain_end(self, code: int) -> HalationError:
+        """The error to raise after a signal or a library has ended the process: its exit code, or minus the signal."""
+        name = name_end(code)
         self._beat = self._file.read_text(encoding="utf-8")
         if has_memory_limit():
             return explain_memory_limit(name)
         if self._beat:
             return self._fault(f"has ended the process ({name}) while it compiled or ran: make the code simpler")
-        return RenderError(f"the render was ended from outside ({name})")
+        return explain_end(code)
 
     def _fault(self, sentence: str) -> DeviceError:
         nodes = self._beat.partition(" ")[2]
         return DeviceError(f"{describe_owner(nodes)}: its code {sentence}", node=nodes)
 
 
-def name_signal(number: int) -> str:
-    """The name of a signal, or its number."""
+def name_end(code: int) -> str:
+    """What has ended a process: the name of a signal, of which `code` is minus the number, or the exit code."""
+    if code >= 0:
+        return f"code {code}"
     try:
-        return signal.Signals(number).name
+        return signal.Signals(-code).name
     except ValueError:
-        return f"signal {number}"
+        return f"signal {-code}"
+
+
+def explain_end(code: int) -> RenderError:
+    """The error of a process that had not come to its end: a signal comes from outside, a code from a library."""
+    where = "from outside" if code < 0 else "by a library"
+    return RenderError(f"the render was ended {where} ({name_end(code)})")
 
 
 def explain_memory_limit(name: str) -> RenderError:

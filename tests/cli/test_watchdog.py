@@ -52,6 +52,31 @@ def render(*words: object, text: str | None = None) -> subprocess.CompletedProce
     return subprocess.run(command, capture_output=True, text=True, timeout=100, input=text)
 
 
+def watch(work: str, **environment: str) -> str:
+    """What a process says of a copy that it watches."""
+    words = "import os\nfrom halation.cli.watchdog import run_session\nfrom halation.errors import HalationError\n"
+    words += f"try: print(run_session(lambda: {work}, 20.0, False))\n"
+    words += "except HalationError as fault: print(type(fault).__name__, fault)"
+    command = [sys.executable, "-P", "-c", words]
+    ended = subprocess.run(
+        command, capture_output=True, text=True, timeout=60, check=True, env={**os.environ, **environment}
+    )
+    return ended.stdout.strip()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux keeps to it")
+@pytest.mark.parametrize("code", [0, 1, 5, 127])
+def test_a_watched_copy_keeps_its_code_unless_a_library_has_ended_it(code: int) -> None:
+    """The loader of libraries ends a process with 127, OpenBLAS with 1: as a command that fails does."""
+    assert watch(str(code)) == str(code)
+    assert watch(f"os._exit({code})") == f"RenderError the render was ended by a library (code {code})"
+    beat = f"(open(os.environ['HALATION_HEARTBEAT'], 'w').write('1 user'), os._exit({code}))"
+    assert watch(beat) == (
+        f"DeviceError node 'user': its code has ended the process (code {code}) while it compiled or ran: make the "
+        "code simpler"
+    )
+
+
 def test_code_that_never_ends_is_stopped(tmp_path: Path) -> None:
     out = tmp_path / "out.exr"
     ended = render(graph(tmp_path, ENDLESS), "-o", out, "--timeout", 1, "--json")
