@@ -119,6 +119,48 @@ def test_an_archive_that_unpacks_to_too_much(cli, base: Path, tmp_path: Path, mo
     assert OTHER not in read_files(base)
 
 
+@pytest.mark.parametrize("limit", ["MAX_BYTES", "MAX_FILES"])
+def test_the_largest_archive_is_imported_and_one_more_is_not(
+    cli, base: Path, tmp_path: Path, monkeypatch, limit: str
+) -> None:
+    """Both limits count the header too, and what is unpacked."""
+    cli("cache", "--export", tmp_path / "cache.zip")
+    archive = change_archive(tmp_path / "cache.zip", tmp_path / "other.zip", {PROGRAM: b"code", OTHER: bytes(5000)})
+    with zipfile.ZipFile(archive) as opened:
+        sizes = [member.file_size for member in opened.infolist()]
+    most = {"MAX_BYTES": sum(sizes), "MAX_FILES": len(sizes)}[limit]
+    monkeypatch.setattr(f"halation.renderer.opengl.cache_archive.{limit}", most - 1)
+    result = cli("cache", "--import", archive)
+    assert result.code == 4 and f"{archive}: has more than" in result.err and OTHER not in read_files(base)
+    monkeypatch.setattr(f"halation.renderer.opengl.cache_archive.{limit}", most)
+    assert cli("cache", "--import", archive, "--json").json["imported"] == 1
+    assert read_files(base)[OTHER] == bytes(5000)
+
+
+def test_a_file_or_folder_that_is_a_link_is_left_out_of_an_export(cli, base: Path, tmp_path: Path) -> None:
+    """It may lead anywhere; a link to a program of the cache too."""
+    (tmp_path / "secret").write_bytes(b"secret")
+    (base / OTHER).parent.mkdir()
+    (base / OTHER).symlink_to(tmp_path / "secret")
+    (base / f"mesa_shader_cache/cd/{'4' * 38}").symlink_to(base / PROGRAM)
+    assert cli("cache", "--export", tmp_path / "cache.zip", "--json").json["exported"] == 2
+    with zipfile.ZipFile(tmp_path / "cache.zip") as archive:
+        assert {*archive.namelist()} == {"halation-cache.json", PROGRAM, RECORD}
+
+
+def test_a_header_that_is_too_large_or_holds_no_owner(cli, base: Path, tmp_path: Path) -> None:
+    cli("cache", "--export", tmp_path / "cache.zip")
+    with zipfile.ZipFile(tmp_path / "cache.zip") as archive:
+        header = archive.read("halation-cache.json")
+    for number, text in enumerate((header + b" " * 10**6, b"{}", b"[]", b"{", b"[" * 9000, b'{"renderer": 1}')):
+        with zipfile.ZipFile(tmp_path / f"{number}.zip", "w") as archive:
+            archive.writestr("halation-cache.json", text)
+            archive.writestr(OTHER, b"code")
+        result = cli("cache", "--import", tmp_path / f"{number}.zip")
+        assert result.code == 4 and "is no archive that halation cache --export has written" in result.err, text[:20]
+        assert OTHER not in read_files(base)
+
+
 def test_a_folder_that_is_a_link_is_not_written_through(cli, base: Path, tmp_path: Path) -> None:
     cli("cache", "--export", tmp_path / "cache.zip")
     archive = change_archive(tmp_path / "cache.zip", tmp_path / "link.zip", {OTHER: b"code"})

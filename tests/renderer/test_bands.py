@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from clocks import FakeClock
 from halation.custom_nodes import Code, node_type
+from halation.errors import RenderError
 from halation.graph import Graph, Output, Port, Settings
 from halation.nodes.input.noise import Noise
 from halation.renderer import Renderer, RenderRequest, open_device
@@ -112,3 +113,57 @@ def test_a_run_that_is_dropped_leaves_nothing(engine):
     lease.close()
     engine.runner.release_idle()
     assert not run.step(0.0) and engine.runner.textures.allocated == 0
+
+
+@pytest.mark.parametrize("first", [1, 12])
+def test_of_two_runs_that_make_one_picture_one_copy_stays(engine, first):
+    """The slower one drops its own as soon as the other is done: one lease alone keeps what a run of its own keeps."""
+    request = RenderRequest(precision="float")
+    plan, whole = engine.compile(slow_graph(), request), engine.render(slow_graph(), request)
+    engine.runner.release_idle()
+    leases = [engine.runner.create_lease() for _ in range(2)]
+    one, other = (engine.runner.start_run(plan, lease) for lease in leases)
+    for _ in range(first):
+        assert one.step(0.0)
+    while other.step(0.0):
+        one.step(0.0)
+    while one.step(0.0):
+        pass
+    one.close(), other.close()
+    textures = engine.runner.textures
+    kept = {plan.surfaces[number].key for number in plan.outputs.values()}
+    assert {*textures._results} == kept and {*textures._leases.values()} == {2}
+    leases[1].close()
+    assert {*textures._leases.values()} == {1}
+    same_bits(engine.runner.download(plan), whole)
+    leases[0].close()
+    engine.runner.release_idle()
+    assert textures.allocated == 0 and not textures._leases
+
+
+def test_a_pass_that_fails_leaves_nothing_half_drawn(engine, monkeypatch):
+    """A fault of the driver, in the middle of a pass or at its end, names the node; the next run draws all of it."""
+    request = RenderRequest(precision="float")
+    plan, whole = engine.compile(slow_graph(), request), engine.render(slow_graph(), request)
+    run_pass, calls = Executor._run_pass, iter(range(99))
+
+    def run_few_bands(*words):
+        if next(calls) == 3:
+            raise RenderError("the device is lost", node="code")
+        return run_pass(*words)
+
+    for owner, name, stand_in, says in (
+        (Executor, "_run_pass", run_few_bands, "the device is lost"),
+        (type(engine.device), "take_error", lambda _: "GL_OUT_OF_MEMORY", "code.*reports GL_OUT_OF_MEMORY"),
+    ):
+        engine.runner.release_idle()
+        lease = engine.runner.create_lease()
+        with monkeypatch.context() as patch, engine.runner.start_run(plan, lease) as run:
+            patch.setattr(owner, name, stand_in)
+            with pytest.raises(RenderError, match=says) as caught:
+                while run.step(0.0):
+                    pass
+        assert caught.value.node == "code"
+        assert not [key for key in engine.runner.textures._results if key.startswith("draft")]
+        lease.close()
+        same_bits(engine.render(slow_graph(), request), whole)
