@@ -105,9 +105,7 @@ def test_a_pass_draws_what_its_shader_writes_whatever_others_left_on(device: Ope
 
 @pytest.mark.usefixtures("left_on")
 @pytest.mark.parametrize("depths", [(-0.5, 0.5), (0.5, -0.5)])
-def test_of_two_walls_the_nearer_one_is_seen_from_both_sides(
-    device: OpenGLDevice, depths: tuple[float, float]
-) -> None:
+def test_of_two_walls_the_nearer_one_is_seen_from_both_sides(device: OpenGLDevice, depths: tuple[float, float]) -> None:
     """In whatever order they come, and twice: the depth of the first picture is gone."""
     target, program = fill(device), device.create_program(TINTED, VERTEX)
     nearer = 1.0 if depths[0] < depths[1] else 2.0

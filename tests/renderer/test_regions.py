@@ -25,6 +25,11 @@ CAMERA = look_at((1.0, -5.0, 2.0), (0.0, 0.0, 0.5), (1.2, 1.9))
 
 REGIONS = (Region(0, 0, 20, 13), Region(120, 60, 21, 9), Region(240, 0, 11, 131))
 
+CORNERS = (Region(240, 0, 11, 7), Region(230, 120, 21, 11))
+"""Where a picture ends on two sides, far from a center at a fifth of its width."""
+
+FAR_ROOMS = ("blur", "distort", "glow", "lens")
+"""Folders of nodes whose reach grows with their values, or toward the corners."""
 
 ANYWHERE = frozenset(
     {
@@ -105,3 +110,35 @@ def test_nothing_else_is_read(renderer, id):
     )
     assert not proven or id not in ANYWHERE, f"'{id}' has an overlap: remove it from ANYWHERE, in {__file__}"
     prove(renderer, random_node(Random(id), CLASSES[id]), some=True, regions=REGIONS[1:2])
+
+
+def room_of(kind: type[Node]) -> str:
+    """The folder of a node."""
+    return kind.__module__.split(".")[-2]
+
+
+def choose_ends(rng: Random, kind: type[Node], turn: int) -> Node:
+    """A node with each number at an end of its soft range: what reaches far, reaches as far as it may.
+
+    Choices come in turn, and places lie off the middle.
+    """
+    values = {}
+    for value in kind.values.values():
+        if value.type == "choice":
+            values[value.name] = value.choices[turn % len(value.choices)]
+        elif value.type == "bool":
+            values[value.name] = rng.random() < 0.5
+        elif value.type == "vector" and value.default == (0.5, 0.5):
+            values[value.name] = (0.2, 0.7)
+        elif value.unit is not None and value.type in ("float", "int"):
+            low, high = max(value.low, value.minimum), min(value.high, value.maximum)
+            values[value.name] = type(value.default)(low if low < 0.0 and rng.random() < 0.5 else high)
+    return kind(**values)
+
+
+@pytest.mark.parametrize("id", sorted(id for id in {*CLASSES} - ANYWHERE if room_of(CLASSES[id]) in FAR_ROOMS))
+def test_nothing_else_is_read_with_values_at_their_ends(renderer, id):
+    """In the corners that are the farthest from the center."""
+    rng = Random(f"{id} at its ends")
+    for turn in range(2):
+        prove(renderer, choose_ends(rng, CLASSES[id], turn), some=False, regions=CORNERS)
