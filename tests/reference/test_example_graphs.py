@@ -145,6 +145,7 @@ def test_values_of_examples_are_within_the_sliders(id: str) -> None:
             assert value in declared.choices
         if declared.type == "curve":
             assert (np.diff(value[::2]) > 0.0).all() and 0.0 <= min(value[::2]) <= max(value[::2]) <= 1.0
+            assert declared.low <= min(value[1::2]) <= max(value[1::2]) <= declared.high
 
 
 def test_what_is_not_changed_is_not_described() -> None:
