@@ -11,8 +11,9 @@ from pathlib import Path
 from ..compiler import find_named_files
 from ..compiler.lowering.references import find_path_texts
 from ..errors import HalationError
-from ..graph import Graph
+from ..graph import Graph, Port
 from ..graph.frames import Pattern
+from ..graph.names import INPUTS
 from ..inputs.provider import MediaProvider
 from ..resources.input_files import content_hash, read_bytes
 from ..resources.sandbox import Sandbox
@@ -58,12 +59,14 @@ class FileMarker:
         self._graph, self._sandbox = graph, sandbox
         self._hashing = hashing or FileHashing(sandbox)
         self._pictures = MediaProvider(sandbox=sandbox)
-        self._named_files = find_named_files(graph, self._pictures.bind(graph, inputs))
+        bound = self._pictures.bind(graph, inputs)
+        self._named_files = find_named_files(graph, bound)
         picture_paths = {path for path, _, _ in self._named_files}
+        replaced = {str(Port(INPUTS, name)) for name in bound}  # nobody reads the files that these inputs name
         self._others = [
             os.path.abspath(path)  # noqa: PTH100 - links stay
-            for _, path in find_path_texts(graph).values()
-            if path not in picture_paths
+            for name, (_, path) in find_path_texts(graph).items()
+            if path not in picture_paths and name not in replaced
         ]
 
     @property
