@@ -163,10 +163,10 @@ class StreamRelay:
         except OSError:
             piece = b""
         lines = self._request_lines.split(piece if piece else b"\n")
-        self._has_ended = not piece or self._client.is_gone
         for line in lines:
             if line.strip():
                 queue_line(self._queue, self._client, line)
+        self._has_ended = not piece or self._client.is_gone
         if self._request_lines.size > MAX_LINE_BYTES:
             refuse_long_line(self._client)
             self._has_ended = True

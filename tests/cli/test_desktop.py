@@ -140,27 +140,34 @@ def test_a_thumbnail_reads_nothing_above_its_folder(cli, tmp_path):
 
 def test_an_error_shows_in_a_window(cli, tmp_path, monkeypatch):
     """Only where the menu of the desktop asks for it: a terminal already shows it."""
-    shown = list[str]()
+    shown, acts = list[str](), list[str]()
     box, tk = ModuleType("tkinter.messagebox"), ModuleType("tkinter")
-    box.showerror = lambda title, sentence, parent: shown.append(sentence)  # type: ignore[attr-defined]
-    window = type("Window", (), {"withdraw": lambda self: None, "destroy": lambda self: None})
+    box.showerror = lambda title, sentence, parent: shown.append(sentence) or acts.append(title)  # type: ignore[attr-defined]
+    window = type("Window", (), {name: lambda self, name=name: acts.append(name) for name in ("withdraw", "destroy")})
     tk.Tk, tk.TclError, tk.messagebox = lambda className: window(), RuntimeError, box  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "tkinter", tk)
     monkeypatch.setitem(sys.modules, "tkinter.messagebox", box)
     missing = tmp_path / "missing.exr"
     assert cli("edit", missing).code == 4 and not shown
     assert cli("edit", "--show-errors", missing).code == 4 and f"{missing}" in shown[0]
+    assert acts == ["withdraw", "Halation", "destroy"], "no empty window beside it, and none left"
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX: a program of the desktop is a script")
-def test_an_error_shows_where_tk_cannot_start(tmp_path, monkeypatch):
+def test_an_error_shows_where_tk_cannot_start(tmp_path, monkeypatch, capfd):
     """Without its libraries Tk cannot be imported; a program of the desktop shows the error."""
-    (tmp_path / "zenity").write_text(f'#!/bin/sh\nprintf "%s|" "$@" >"{tmp_path}/shown"\n')
+    (tmp_path / "zenity").write_text(f'#!/bin/sh\nprintf "%s|" "$@" >"{tmp_path}/shown"\necho warning >&2\necho\n')
     (tmp_path / "zenity").chmod(0o755)
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setitem(sys.modules, "tkinter", None)
     desktop.show_error("there is no driver")
     assert (tmp_path / "shown").read_text() == "--error|--no-markup|--text|there is no driver|"
+    (tmp_path / "zenity").rename(tmp_path / "xmessage")
+    desktop.show_error("-x is odd")
+    assert (tmp_path / "shown").read_text() == "-x is odd|"
+    (tmp_path / "xmessage").unlink()
+    desktop.show_error("nobody sees it")
+    assert capfd.readouterr() == ("", ""), "what the programs say is nobody's concern"
 
 
 def test_a_missing_library_is_named_with_what_to_install():
@@ -188,20 +195,20 @@ def test_a_manual_page_has_all_that_the_help_has(cli):
         assert all(" ".join((item.help or "").split()) in text for item in shown), name
 
 
-def test_a_desktop_reads_anew_what_was_written_and_what_was_removed(monkeypatch, tmp_path):
+def test_a_desktop_reads_anew_what_was_written_and_what_was_removed(monkeypatch, tmp_path, capfd):
     """Its own programs are run with their folders each time, and a folder that is not there is not told to any."""
     programs, folder, notes = tmp_path / "bin", tmp_path / "share", tmp_path / "notes"
     programs.mkdir()
     parts = {"update-desktop-database": "applications", "update-mime-database": "mime"}
     for name in (*parts, "gtk-update-icon-cache"):
-        (programs / name).write_text(f'#!/bin/sh\necho "$(basename "$0") $*" >> {notes}\n')
+        (programs / name).write_text(f'#!/bin/sh\necho "$(basename "$0") $*" | tee -a {notes}\n')
         (programs / name).chmod(0o755)
     monkeypatch.setenv("PATH", f"{programs}{os.pathsep}{os.environ['PATH']}")
     files = {"applications/a.desktop": b"1", "mime/packages/a.xml": b"2"}
     expected = sorted(f"{name} {folder / part}" for name, part in parts.items())
     for act in (lambda: installation.install(folder, files), lambda: installation.remove(folder, files)):
         act()
-        assert sorted(notes.read_text().splitlines()) == expected
+        assert sorted(notes.read_text().splitlines()) == expected and capfd.readouterr().out == ""
         notes.unlink()
 
 
