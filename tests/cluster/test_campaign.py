@@ -108,6 +108,29 @@ def test_what_a_worker_says_while_it_renders_counts() -> None:
     assert job.report.entries == {2: EntryOutcome(passes=3)} and listener.progress == [(2, 0, 0)]
 
 
+def test_messages_of_workers_come_by_the_topic_of_the_job() -> None:
+    def answer(address: str, chunk: FrameChunk) -> str:
+        frames = [{"frame": frame, "seconds": 0.0, "kept": True} for frame in chunk.parts]
+        client.topics[chunk.topic]((12.5, {"worker": address, "frames": frames}))
+        return finish(address, chunk)
+
+    client = Client(answer, A)
+    job, _ = open_campaign(client, make_chunk(1, 2))
+    report = job.run()
+    assert report.kept == {1, 2} and not job.has_lost_scheduler
+    assert [options["priority"] for _, options, _ in client.sent] == [0] * len(client.sent)
+
+
+def test_a_scheduler_that_has_not_answered_yet_is_not_gone() -> None:
+    client = Client(finish, A)
+    client.status = "connecting"
+    job, _ = open_campaign(client, make_chunk(1))
+    for _ in range(9):
+        job._look_at_workers()
+    client.status = "running"
+    assert job.run().seconds == {1: 1.0}
+
+
 def test_a_worker_that_refuses_gets_no_more_and_is_named_once() -> None:
     def answer(address: str, chunk: FrameChunk) -> str:
         return finish(address, chunk, seconds={}, refusal="it is odd") if address == A else finish(address, chunk)
