@@ -167,6 +167,15 @@ def test_a_file_or_default_inside_becomes_an_input_of_the_graph():
     assert after.inputs["plate2"] == Input(file="a.exr")
 
 
+def test_an_input_has_another_name_than_a_control_that_goes_along():
+    """A control that stays outside has its name, which an input of the group may have too."""
+    for target, name in (("n1.gain", "image2"), ("n0.gain", "image")):
+        after, id = make_group(chain(3).add_control("image", Control(port(target))), {ElementId("n1")}, "g")
+        made = body(after, id)
+        assert list(made.inputs) == [name] and list(made.controls) == ["image"] * (target == "n1.gain")
+        assert links(made)["n1.image"] == f"inputs.{name}"
+
+
 def test_values_links_to_controls_and_paths_are_kept_when_a_group_opens():
     made = Graph(nodes={"n": Gain(), "p": Photo(path="a.exr")}, folder="lib").add_control("g", Control(port("n.gain")))
     made = made.add_control("t", Control(port("n.steps")))
