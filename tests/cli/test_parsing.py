@@ -235,16 +235,18 @@ def test_a_graph_is_a_path_or_a_preset(tmp_path: Path, monkeypatch: pytest.Monke
 
 def test_all_faults_are_counted_and_the_cause_comes_first(capsys: pytest.CaptureFixture[str]) -> None:
     """The link to a node that is not there comes before the output that it leaves empty; an unknown key is said too."""
-    nodes = '"nodes": {"e": {"type": "constant", "odd": 1}}, "links": {"outputs.b": "x.out", "outputs.a": "e.out"}'
-    text = f'{{"halation": 1, "outputs": {{"a": {{"type": "Image"}}, "b": {{"type": "Image"}}}}, {nodes}}}'
+    image = '{"type": "Image"}'
+    nodes = '"nodes": {"e": {"type": "constant", "odd": 1}}, "links": {"outputs.b": "x.out", "outputs.c": "x.out"}'
+    text = f'{{"halation": 1, "outputs": {{"a": {image}, "b": {image}, "c": {image}}}, {nodes}}}'
     lost = document.loads(text, "-", sandbox=UNRESTRICTED)
     for path, hint in ((Path("g.json"), ": halation check g.json"), (Path("-"), "")):
         with pytest.raises(GraphError) as fault:
             options.report_problems(path, lost)
         sentence = "'x.out' cannot feed 'outputs.b': there is no node 'x'; there is e"
-        assert str(fault.value) == f"{path}: {sentence} (and 1 more{hint})"
+        assert str(fault.value) == f"{path}: {sentence} (and 2 more{hint})"
         assert capsys.readouterr().err == f"{path}: nodes.e.odd means nothing to this version and is only kept\n"
-    sound = document.loads(text.replace('"x.out"', '"e.out"'), "-", sandbox=UNRESTRICTED)
+    text = text.replace('"x.out"', '"e.out"').replace('"links": {', '"links": {"outputs.a": "e.out", ')
+    sound = document.loads(text, "-", sandbox=UNRESTRICTED)
     options.report_problems(Path("g.json"), sound)
     assert capsys.readouterr().err == "g.json: nodes.e.odd means nothing to this version and is only kept\n"
 
