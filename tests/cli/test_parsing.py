@@ -34,7 +34,8 @@ def test_an_empty_word_is_named(words: list[str], place: str) -> None:
 
 
 def test_some_texts_may_be_empty() -> None:
-    parsing.check_words(["test", "-k", "", "--view", "", "--look=", "--set", "a=", "x=", "-"])
+    words = ["test", "-k", "", "--view", "", "--look=", "--set", "a=", "x=", "-"]
+    assert parsing.check_words(words) is None
 
 
 def test_names_and_texts_are_read_in_order_and_once() -> None:

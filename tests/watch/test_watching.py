@@ -175,6 +175,24 @@ def test_what_is_no_longer_watched_is_no_news(watcher, path, tmp_path):
     assert news(watcher) == [FileChange("graph", path)]
 
 
+def test_news_is_kept_when_more_is_watched_and_forgotten_when_less(watcher, path, tmp_path):
+    """Also of folders, and where nobody has asked for it yet."""
+    other, shaders = tmp_path / "other.json", tmp_path / "shaders"
+    shaders.mkdir()
+    for file in (other, shaders / "a.glsl"):
+        file.write_text("1")
+    watcher.watch(path, groups=[other], shaders=[shaders])
+    until_listed(watcher)
+    for file in (path, other, shaders / "a.glsl"):
+        file.write_text("2")
+    end = time.monotonic() + 120.0
+    while len(watcher._news) < 3:
+        assert time.monotonic() < end
+        time.sleep(0.005)
+    watcher.watch(path, code=[other], shaders=[shaders])
+    assert {change.path for change in watcher.poll()} == {path, shaders / "a.glsl"}
+
+
 @pytest.mark.skipif(os.name == "nt", reason="links need a privilege there")
 def test_links_are_followed(watcher, path, tmp_path):
     link = tmp_path / "links" / "link.json"
