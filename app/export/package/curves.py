@@ -274,6 +274,8 @@ def _find_largest(rows: Array, *, is_table: bool) -> Array:
 
 
 def _pad(numbers: Array, length: int) -> Array:
+    if len(numbers) == length:  # nearly always
+        return numbers
     return np.pad(numbers, (0, max(length - len(numbers), 0)))
 
 
