@@ -43,8 +43,14 @@ SKIPPED_ROOMS = ("bench", "gui", "hostile", "law", "mutation")
 PAGES = "tests/law/test_generated.py"
 """Defaults of values and options are in the pages that are made of the code; they are compared in a second."""
 
+GUIDES = tuple(f"tests/editor/panels/test_{name}_guide.py" for name in ("layout", "style"))
+"""What every panel draws, and where: few changes of the editor's drawing escape them, wherever they are."""
+
 DRAWING_ROOMS = ("color", "custom_nodes", "nodes", "renderer")
 """Rooms of tests that look at what shaders draw."""
+
+EDITOR = "app", "editor"
+"""Where the path of a file of the editor begins."""
 
 FUNCTIONS = Path("app/export/python/functions")
 """The text of exported scripts."""
@@ -79,7 +85,8 @@ def select_tests(path: Path, line: int) -> list[list[str]]:
     kin, far = ([name for name in runners if (file_of(name) in near) is wanted] for wanted in (True, False))
     quick = [*tests, *(f"--deselect={name}" for name in listed if file_of(name) in tests)] if tests else []
     pages = [PAGES] if path.suffix == ".py" else []
-    return [words for words in (first, kin, pages, far, quick, slow, driving) if words]
+    guides = [*GUIDES] if path.parts[:2] == EDITOR else []
+    return [words for words in (first, kin, guides, pages, far, quick, slow, driving) if words]
 
 
 def file_of(name: str) -> str:
@@ -145,7 +152,7 @@ def list_kin(path: Path) -> set[Path]:
 
 def list_driving_tests(path: Path) -> list[str]:
     """The tests of the real editor that are named after a file of it or after its folder, the file's first."""
-    if path.parts[:2] != ("app", "editor"):
+    if path.parts[:2] != EDITOR:
         return []
     words = {path.stem.rstrip("s"), *(part.rstrip("s") for part in path.parts[2:-1])}
     found = [test for test in _list_test_files() if _room_of(test) == "gui"]
