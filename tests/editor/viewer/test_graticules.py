@@ -105,13 +105,16 @@ def test_a_hint_is_in_the_upper_right_corner_if_it_fits(make_lines) -> None:
     assert not lines.shapes
 
 
-def draw_name(make_lines, monkeypatch, mouse: tuple[float, float], **facts: Any) -> tuple[DrawnShapes, Any]:
-    lines = make_lines(mouse=mouse)
+def draw_name(
+    make_lines, monkeypatch, mouse: tuple[float, float], scale: float = 1.0, **facts: Any
+) -> tuple[DrawnShapes, Any]:
+    lines = make_lines(scale, mouse)
     hit = SimpleNamespace(**{"words": "pillar", "name": "pillar", "on": False, **facts})
     monkeypatch.setattr(mattes, "picks", lambda context: True)
     monkeypatch.setattr(mattes, "find_matte_hit", lambda context, sight, at: hit if at == mouse else None)
     context: Any = SimpleNamespace(viewer=SimpleNamespace(hovered=True), palette=PALETTE, places={})
-    mattes.draw_name(context, Sight((100.0, 50.0), (800, 600), (400, 200), density=2.0))
+    origin, panel = (100.0 * scale, 50.0 * scale), (round(800 * scale), round(600 * scale))
+    mattes.draw_name(context, Sight(origin, panel, (400, 200), density=2.0))
     return lines, context.places["matte name"]
 
 
@@ -126,6 +129,16 @@ def test_the_name_of_an_object_stays_in_the_panel_beside_the_pointer(make_lines,
     assert left >= 100.0 and right <= 500.0 and top >= 50.0 and bottom <= 350.0
     assert {shape.points for shape in lines.list_kinds("rect", "filled rect")} == {((left, top), (right, bottom))}
     assert list_texts(lines)["pillar"] == (left + 6.0, top + 3.0)
+
+
+@pytest.mark.parametrize("mouse", [(150.0, 80.0), (480.0, 80.0), (150.0, 340.0)])
+def test_the_name_of_an_object_grows_with_the_interface(make_lines, monkeypatch, mouse) -> None:
+    small, _ = draw_name(make_lines, monkeypatch, mouse)
+    large, _ = draw_name(make_lines, monkeypatch, (2.0 * mouse[0], 2.0 * mouse[1]), scale=2.0)
+    doubled = [shape.change(2.0, (0.0, 0.0)) for shape in small.shapes]
+    assert [(shape.kind, shape.points, shape.color) for shape in large.shapes] == [
+        (shape.kind, shape.points, shape.color) for shape in doubled
+    ]
 
 
 def test_a_picked_object_has_an_edge_of_the_accent(make_lines, monkeypatch) -> None:
