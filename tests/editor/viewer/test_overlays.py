@@ -319,3 +319,37 @@ def test_disks_of_a_light_lie_inside_each_other_and_a_bar_crosses_a_negative_one
     (bar,) = stage.lines.list_kinds("line")
     (x0, y0), (x1, y1) = bar.points
     assert (x0 + x1, y0, y1) == (2 * 444.0, 292.0, 292.0) and 0.0 < x1 - x0 < 2.0 * radii[-1]
+
+
+def draw_ball(monkeypatch, aim: tuple[float, float, float], on: bool = True) -> list[tuple[float, float, float, int]]:
+    """The disks of a ball of radius 30 around (100, 50), lit by a sun, before a camera that looks along -z."""
+    stage = Stage(monkeypatch)
+    camera = SimpleNamespace(right=(1.0, 0.0, 0.0), down=(0.0, -1.0, 0.0), forward=(0.0, 0.0, -1.0))
+    sun: Any = SimpleNamespace(camera=camera, light=SimpleNamespace(direction=aim, color=(1.0, 1.0, 1.0), on=on))
+    lamp_lines._ball(stage.lines, (100.0, 50.0), 30.0, sun)  # pyright: ignore
+    return [(*shape.points[0], *shape.lengths, shape.color & 255) for shape in stage.lines.list_kinds("disk")]
+
+
+@pytest.mark.parametrize(
+    ("aim", "side"), [((-2.0, 0, 0), (1, 0)), ((0, 1.0, 0), (0, 1)), ((0.6, -0.8, 0), (-0.6, -0.8))]
+)
+def test_a_ball_that_is_lit_from_a_side_has_disks_that_touch_there(monkeypatch, aim, side) -> None:
+    """Each lies in the one before it, and is brighter: the last has a tenth of the radius, and the light's color."""
+    disks = draw_ball(monkeypatch, aim)
+    radii = [radius for _, _, radius, _ in disks]
+    assert radii == sorted(radii, reverse=True) and radii[0] == 30.0 and radii[-1] == pytest.approx(3.0)
+    for x, y, radius, _ in disks:
+        assert (x + side[0] * radius, y + side[1] * radius) == pytest.approx((100 + 30 * side[0], 50 + 30 * side[1]))
+    steps = [disk[3] for disk in disks]
+    assert steps == sorted(steps) and steps[0] == 26 and steps[-1] == 255  # a tenth, and all of it
+    middle = (steps[0] + steps[-1]) / 2.0
+    assert steps[6] < middle < steps[7] and steps[7] - middle == pytest.approx(middle - steps[6], abs=2.0)
+
+
+def test_a_ball_is_bright_from_before_and_dark_from_behind(monkeypatch) -> None:
+    """Disks have one middle then. From before, the edge of the ball is half as bright as its middle."""
+    before, behind = (draw_ball(monkeypatch, (0.0, 0.0, z)) for z in (-1.0, 1.0))
+    assert {disk[:2] for disk in before + behind} == {(100.0, 50.0)}
+    assert [disk[3] for disk in before][0] == pytest.approx((26 + 255) / 2, abs=1) and before[-1][3] == 255
+    assert {disk[3] for disk in behind} == {26}
+    assert draw_ball(monkeypatch, (-1.0, 0, 0), on=False)[-1][3] == 0
