@@ -350,6 +350,6 @@ def test_a_ball_is_bright_from_before_and_dark_from_behind(monkeypatch) -> None:
     """Disks have one middle then. From before, the edge of the ball is half as bright as its middle."""
     before, behind = (draw_ball(monkeypatch, (0.0, 0.0, z)) for z in (-1.0, 1.0))
     assert {disk[:2] for disk in before + behind} == {(100.0, 50.0)}
-    assert [disk[3] for disk in before][0] == pytest.approx((26 + 255) / 2, abs=1) and before[-1][3] == 255
+    assert before[0][3] == pytest.approx((26 + 255) / 2, abs=1) and before[-1][3] == 255
     assert {disk[3] for disk in behind} == {26}
     assert draw_ball(monkeypatch, (-1.0, 0, 0), on=False)[-1][3] == 0
