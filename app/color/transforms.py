@@ -191,8 +191,10 @@ def _find_named(manager: ColorManager, space: OcioColorSpace) -> OcioColorSpace:
 
 
 def _find_rec709(manager: ColorManager) -> OcioColorSpace:
-    """Linear Rec.709, of this config or of the studio config."""
-    return manager.find(LINEAR_REC709) or OcioColorSpace("Linear Rec.709 (sRGB)", False)
+    """Linear Rec.709, of this config or of the studio config, which has it always."""
+    space = manager.find(LINEAR_REC709)
+    assert space is not None
+    return space
 
 
 def _make_exact(processor: Any) -> Any:

@@ -115,6 +115,19 @@ def test_a_white_is_adapted(tmp_path):
     assert name_and_reason(same) == ("lin_rec709_scene", "its chromaticities")
 
 
+def test_a_config_without_rec709_gets_it_from_the_studio_config(tmp_path, light, house, color):
+    """Light by primaries of its own, in the working space of a house whose config has no linear Rec.709."""
+    text = house.read_text("utf-8")
+    start, end = (
+        text.index("  - !<ColorSpace>\n    name: house seven"),
+        text.index("  - !<ColorSpace>\n    name: house tex"),
+    )
+    house.write_text(text[:start] + text[end:], "utf-8")
+    path = with_chromaticities(tmp_path / "a.exr", light, (0.62, 0.34, 0.29, 0.61, 0.15, 0.07, *D65))
+    expected = rgb(path).astype(np.float64) @ np.linalg.inv(AP1_TO_REC709).T
+    np.testing.assert_allclose(rgb(path, color), expected, rtol=1e-4, atol=1e-4 * np.abs(expected).max())
+
+
 IMPOSSIBLE = {
     "zeros": (0.0,) * 8,
     "on a line": (0.1, 0.1, 0.2, 0.2, 0.3, 0.3, *D65),
