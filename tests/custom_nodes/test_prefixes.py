@@ -55,3 +55,12 @@ def test_what_is_prefixed() -> None:
 
 def test_what_the_driver_refuses_is_left_to_it() -> None:
     assert prefix_names("float[2 g; float h", {"h"}, "w_") == "float[2 g; float w_h"
+
+
+def test_code_that_ends_anywhere_keeps_its_text() -> None:
+    """The driver says what is missing; without the prefixes each start of a text is what it was."""
+    text = (
+        "struct T { float r; }; const int N = 1, M[2] = int[2](N, 3); float g; T[N] h; float r(T s) { return s.r + g; }"
+    )
+    for end in range(len(text) + 1):
+        assert prefix_names(text[:end], {"r"}, "w_").replace("w_", "") == text[:end]
