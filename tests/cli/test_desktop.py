@@ -44,7 +44,8 @@ def test_a_shell_reads_the_command_as_it_was_meant(folder):
     """Quotes in `Exec` are those of a shell, inside a string with escapes of its own, and % stands as %%."""
     program = (f"/{folder}/halation", "-P")
     entry = read_entry(desktop.desktop_entries(program)["applications/halation.desktop"])
-    words = entry["Exec"].replace("\\\\", "\\").replace("%%", "%")
+    escapes = {"s": " ", "n": "\n", "t": "\t", "r": "\r", "\\": "\\"}  # "Possible value types": no others
+    words = re.sub(r"\\(.)", lambda match: escapes[match[1]], entry["Exec"]).replace("%%", "%")
     output = subprocess.run(["sh", "-c", f"printf '%s\\n' {words}"], capture_output=True, text=True, check=True).stdout
     assert output.splitlines() == [*program, "edit", "--show-errors", "%f"]
 
@@ -156,7 +157,9 @@ def test_an_error_shows_in_a_window(cli, tmp_path, monkeypatch):
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX: a program of the desktop is a script")
 def test_an_error_shows_where_tk_cannot_start(tmp_path, monkeypatch, capfd):
     """Without its libraries Tk cannot be imported; a program of the desktop shows the error."""
-    (tmp_path / "zenity").write_text(f'#!/bin/sh\nprintf "%s|" "$@" >"{tmp_path}/shown"\necho warning >&2\necho\n')
+    (tmp_path / "zenity").write_text(
+        f'#!/bin/sh\nprintf "%s|" "$@" >"{tmp_path}/shown"\necho warning >&2\necho\nexit 1\n'
+    )
     (tmp_path / "zenity").chmod(0o755)
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setitem(sys.modules, "tkinter", None)

@@ -14,8 +14,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from exr_files import write_exr
-from halation.cli.farm_files import MAX_TASKS, divide_frames
+from halation.cli import submit as submit_module
+from halation.cli.farm_files import MAX_TASKS, FarmFile, divide_frames
 from halation.graph.frames import parse_frames
+from halation.presets import paths
 
 BIN = Path(sys.executable).parent
 POSIX = pytest.mark.skipif(os.name == "nt", reason="POSIX")
@@ -191,3 +193,32 @@ def test_what_the_farm_files_hold_is_json_in_yaml(cli, shot_folder):
     for line in (shot_folder / "job.yaml").read_text().splitlines():
         scalar = re.sub(r"^ *(- )?(\w+:)? ?", "", line)
         assert not scalar or json.loads(scalar) is not None, line
+
+
+def test_the_words_of_a_task_and_the_files_in_them(tmp_path):
+    """What a farm copies: files by themselves, and folders where a name has a place for the frame."""
+
+    def list_words(path, **more):
+        options = {"inputs": None, "sets": None, "node": "", "size": None, "scale": 1.0, "precision": None}
+        options |= {"memory": None, "view": ""}
+        return [*submit_module._list_words(path, **{"output": ["o/f.####.exr"], **options, **more})]
+
+    target = FarmFile("--output=", "o", "/f.####.exr", "the folder of the frames", True, True)
+    graph = FarmFile("", "a.json", about="the graph")
+    assert list_words(Path("a.json")) == ["render", graph, target, "--resume"]
+    inputs = ["plate=in/p.%04d.exr:Depth", "still.png:R"]
+    words = list_words(
+        Path("-a.json"), inputs=inputs, sets=["b.c=1"], output=["x=o/f.png"], node="n", size="8x6", scale=0.5,
+        precision="half", memory="2G", view="sRGB",
+    )  # fmt: skip
+    assert words == [
+        "render",
+        FarmFile("", "./-a.json", about="the graph"),
+        FarmFile("--input=plate=", "in", "/p.%04d.exr:Depth", "the folder of input plate", True),
+        FarmFile("--input=", "still.png", ":R", "input"),
+        FarmFile("--output=x=", "o", "/f.png", "the folder of the frames", True, True),
+        "--set=b.c=1", "--node=n", "--size=8x6", "--scale=0.5", "--precision=half", "--memory=2G", "--view=sRGB",
+        "--resume",
+    ]  # fmt: skip
+    preset = paths()[0]
+    assert list_words(preset)[1] == preset.stem

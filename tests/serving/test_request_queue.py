@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 
 import pytest
 from halation.errors import UsageError
@@ -66,12 +67,27 @@ def test_too_many_requests_are_refused(monkeypatch):
     queue.add_request(two, request(4))
 
 
-def test_waiting_ends_with_a_request_or_with_the_queue():
+@pytest.mark.parametrize("comes", ["request", "end"])
+def test_waiting_ends_at_once_with_a_request_or_with_the_queue(monkeypatch, comes):
+    """Nobody waits until the queue looks by itself, which it does for the sake of signals."""
+    monkeypatch.setattr(request_queue, "SIGNAL_INTERVAL", 60.0)
     queue, one = RequestQueue(), client()
     turns: list[object] = []
-    thread = threading.Thread(target=lambda: turns.extend((queue.take_request(), queue.take_request())))
+    thread = threading.Thread(target=lambda: turns.append(queue.take_request()), daemon=True)
     thread.start()
+    end = time.monotonic() + 30.0
+    while not queue._changed._waiters and time.monotonic() < end:  # pyright: ignore[reportAttributeAccessIssue]
+        time.sleep(0.001)
+    if comes == "request":
+        queue.add_request(one, request(1))
+    else:
+        queue.close()
+    thread.join(30)
+    assert turns == [(one, request(1)) if comes == "request" else None]
+
+
+def test_what_waits_is_handed_out_before_the_end():
+    queue, one = RequestQueue(), client()
     queue.add_request(one, request(1))
     queue.close()
-    thread.join(30)
-    assert turns == [(one, request(1)), None]
+    assert [queue.take_request(), queue.take_request()] == [(one, request(1)), None]

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from halation.compiler import planner
 from halation.resources.sandbox import UNRESTRICTED
+from halation.serving import service as service_module
 from halation.serving.listening import make_line_writer
 from halation.serving.request_queue import ServiceClient
 from halation.serving.service import RenderService, ServiceLimits
@@ -67,3 +68,35 @@ def test_a_client_that_cannot_be_written_to_is_dropped(fault) -> None:
     broken: Any = SimpleNamespace(write=fail, flush=lambda: None)
     make_line_writer(broken, lambda: gone.append(True))(b"two\n")
     assert gone == [True]
+
+
+@pytest.mark.parametrize(("reason", "said"), [("cancelled", [{"id": 7, "cancelled": True}]), ("gone", [])])
+def test_a_request_that_nobody_needs_any_more_is_not_begun(renderer, reason: str, said: list[Any]) -> None:
+    replies: list[Any] = []
+    service, client = RenderService(renderer, UNRESTRICTED, ServiceLimits()), ServiceClient(replies.append)
+    client.cancelled_ids |= {7} if reason == "cancelled" else set()
+    client.is_gone = reason == "gone"
+    service.answer(client, ServiceRequest("render", id=7, graph="no such graph"))
+    assert replies == said and not client.cancelled_ids
+    client.is_gone = False
+    service.answer(client, ServiceRequest("render", id=7, graph="no such graph"))  # the same name may be used again
+    assert [(reply["id"], reply["error"]["exit_code"]) for reply in replies[len(said) :]] == [(7, 3)]
+
+
+@pytest.mark.parametrize(("seconds", "is_refused"), [(5.0, True), (0.0, False), (7.0, False)])
+def test_a_request_may_take_so_long(renderer, monkeypatch, seconds: float, is_refused: bool) -> None:
+    """Each look at the clock takes three seconds; 0 is no limit."""
+    looks = iter(range(0, 3000, 3))
+    monkeypatch.setattr(service_module, "time", SimpleNamespace(monotonic=lambda: float(next(looks))))
+    replies: list[Any] = []
+    service = RenderService(renderer, UNRESTRICTED, ServiceLimits(seconds=seconds))
+
+    def answer(request: ServiceRequest, check: Any) -> dict[str, Any]:
+        check(1, 2, 3)
+        return {"done": True}
+
+    monkeypatch.setattr(service, "_choose_answer", lambda request: answer)
+    service.answer(ServiceClient(replies.append), ServiceRequest("check", id=1))
+    (reply,) = replies
+    assert reply.get("done", False) is not is_refused
+    assert not is_refused or "takes more than 5 seconds" in reply["error"]["message"]
