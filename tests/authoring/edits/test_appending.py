@@ -18,12 +18,13 @@ from halation.authoring.commands import (
     MakeGroup,
     ReplaceGraph,
 )
+from halation.authoring.edits.appending import estimate_sizes
 from halation.authoring.edits.element_id import ElementId
 from halation.authoring.edits.layout import positions
 from halation.authoring.session import Session
 from halation.editor.canvas.layout import NodeFacts, make_node_layout
 from halation.graph import Graph, Input, Output, Port
-from halation.nodes import Kind
+from halation.nodes import Kind, catalogue
 from halation.render_layers.render import read_render
 from halation.renderer import Renderer, RenderRequest
 from halation.resources.sandbox import UNRESTRICTED
@@ -301,3 +302,13 @@ def test_no_metal_is_looked_for_where_no_layer_tells_it(session: Session, tmp_pa
     session.files.open_pictures([write_gold(tmp_path, "Glossy Color")])
     relight = append(session, "deferred_lighting")
     assert len(session.graph.nodes) == 2 and "material" not in feeders_of(session, relight)
+
+
+def test_room_for_a_node_is_what_the_canvas_draws_and_little_more() -> None:
+    """Before a node is drawn its size is guessed: too little would cover others, much too much would push them away."""
+    for id in [*catalogue()][::4]:
+        graph = Graph().add("n", catalogue()[id]())
+        width, height = estimate_sizes(graph)[ElementId("n")]
+        drawn = make_node_layout("n", graph.nodes["n"], graph, NodeFacts(picture=True))
+        assert 0.0 <= height - drawn.height < 100.0 and abs(width - drawn.width) < 8.0, id
+    assert estimate_sizes(graph, {ElementId("n"): (7.0, 9.0)}) == {ElementId("n"): (7.0, 9.0)}
