@@ -67,6 +67,22 @@ def test_every_input_that_is_needed_has_something_of_its_kind(id: str) -> None:
         assert graph.links[Port("outputs", name)] == Port(NODE, name)
 
 
+def test_what_shows_nothing_alone_is_linked_and_other_optional_inputs_are_not() -> None:
+    """A node without a needed input shows nothing as long as a number or its only picture is black."""
+    linked, free = set[str](), set[str]()
+    for id, kind in NODES.items():
+        if not kind.inputs or not all(socket.optional for socket in kind.inputs.values()):
+            continue
+        graph, pictures = show_on_sample(kind, SAMPLE), [s for s in kind.inputs.values() if s.kind is Kind.IMAGE]
+        for name, socket in kind.inputs.items():
+            if name == "mask" or socket.kind is Kind.VECTOR:
+                continue
+            is_black = socket.default == 0.0 or (socket.default == (0.0,) * 4 and pictures == [socket])
+            assert (find_source(graph, name) is not None) == is_black, f"{id}.{name}"
+            (linked if is_black else free).add(id)
+    assert linked and free
+
+
 @pytest.mark.parametrize("id", NODES)
 def test_files_are_those_of_the_sample_for_sources_alone(id: str) -> None:
     kind, paths = NODES[id], [value.name for value in NODES[id].values.values() if value.type == "path"]
