@@ -46,3 +46,9 @@ def test_the_driver_s_error_belongs_to_its_line_where_it_is_in_this_text() -> No
     assert find(NODE, error=ShaderError("a", here, 3, "error: no such name ")) == Fault(3, "no such name")
     assert find(NODE, error=ShaderError("a", elsewhere, 3, "bad")) == Fault(0, f"{elsewhere}, line 3: bad")
     assert find(SimpleNamespace(), error=ShaderError("a", here, 3, "bad")) is None, "no code of a user"
+
+
+def test_a_fault_names_its_line_or_begins_with_a_capital() -> None:
+    assert Fault(0, "nan is no number").text == "Nan is no number"
+    assert Fault(3, "no such name").text == "Line 3: no such name"
+    assert Fault(2, "").text == "Line 2: "
