@@ -157,6 +157,12 @@ def test_a_file_says_what_is_meant(cli, tidy):
     assert rules(filtering_twice="meant", unbound_input="bound by the farm", outside_repository="by a script") == []
 
 
+def test_what_is_allowed_in_vain_is_named_at_its_line(cli, tidy):
+    path = tidy(**TWICE, settings={"allow": {"filtering-twice": "meant", "loop": "?"}})
+    ((_, line, *_, rule),) = lines(cli("check", path))
+    assert (line, rule) == (line_of(path, '"loop": '), "stale-allow")
+
+
 def test_folders_patterns_and_names(cli, tidy, tmp_path, monkeypatch):
     (tmp_path / "deep" / "er").mkdir(parents=True)
     (tmp_path / ".git").mkdir()

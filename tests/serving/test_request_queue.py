@@ -82,7 +82,7 @@ def test_waiting_ends_at_once_with_a_request_or_with_the_queue(monkeypatch, come
         queue.add_request(one, request(1))
     else:
         queue.close()
-    thread.join(30)
+    thread.join(10)
     assert turns == [(one, request(1)) if comes == "request" else None]
 
 
