@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from halation.cluster import campaign, workers
 from halation.cluster.campaign import FrameCampaign
-from halation.cluster.chunk import ChunkReport, ChunkStage, EntryOutcome, FileMark, FrameChunk
+from halation.cluster.chunk import ChunkReport, ChunkStage, EntryOutcome, FileMark, FrameChunk, StageReport
 from halation.errors import RenderError, UsageError
 from halation.renderer.jobs import shared_results
 from halation.renderer.jobs.render_entry import RenderEntry
@@ -357,3 +357,20 @@ def test_shared_results_are_removed_here_or_where_they_are_mapped_to(tmp_path: P
         assert not folder.exists() and [json.loads(text) for text in client.removed] == (
             [["/farm/x", [["/farm", "/there"]]]] if pairs else []
         )
+
+
+def test_the_history_of_a_node_is_rendered_by_one_worker_at_a_time_and_frames_by_all(tmp_path: Path) -> None:
+    def answer(address: str, chunk: FrameChunk) -> str:
+        assert chunk.stage is not None
+        if chunk.stage.kind == "frames":
+            return finish(address, chunk)
+        seconds = dict.fromkeys(chunk.stage.frames, 1.0)
+        report = StageReport(seconds, memories=dict.fromkeys(seconds, ()), frame_bytes=8)
+        return finish(address, chunk, seconds={}, stage=report)
+
+    client = Client(answer, A, B)
+    stage = ChunkStage(folder=str(tmp_path / "none"), frame_before=1)
+    report = open_campaign(client, make_chunk(1, 2, 3, 4, stage=stage))[0].run()
+    assert sorted(report.seconds) == [1, 2, 3, 4] and report.stages == {"ahead": 0, "history": 3} and not report.faults
+    kinds = [chunk.stage.kind for chunk, _, _ in client.sent if chunk.stage]
+    assert kinds[0] == "history" and set(kinds) == {"history", "frames"}
