@@ -12,6 +12,7 @@ data, of which the renderer needs nothing else. `isf` writes a graph as one shad
 from __future__ import annotations
 
 from .areas import Region, scale_size
+from .codegen.forms import LOCAL_SIZE
 from .explain import explain, plan_as_json, write_dot
 from .ir import MAX_WEIGHTS, Memory, Ref, StoredResult
 from .lengths import ResolvedLength, resolve_lengths
@@ -27,6 +28,7 @@ from .tiling.tiling import plan_tile
 
 __all__ = [
     "FIRST_TABLE",
+    "LOCAL_SIZE",
     "MAX_WEIGHTS",
     "NULL",
     "Form",

@@ -181,7 +181,7 @@ def test_code_that_would_run_for_minutes_is_refused_before_it_runs() -> None:
         for (int i = 0; i < 40000; i++) sum = fract(sin(sum + float(i)) * 437.5);
         return vec4(sum);
     }""")
-    renderer = Renderer(trial_process=TrialProcess(timeout=1.0), sandbox=UNRESTRICTED)
+    renderer = Renderer(trial_process=TrialProcess(timeout=4.0), sandbox=UNRESTRICTED)
     few, many = (RenderRequest({"image": np.full((side, side, 4), 0.5, np.float32)}) for side in (8, 2048))
     assert np.isfinite(renderer.render(rounds, few)["out"]).all()
     with pytest.raises(DeviceError, match=r"node 'user': its code would run for about .* minutes on 2048x2048 pixels"):

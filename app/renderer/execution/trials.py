@@ -23,7 +23,7 @@ from typing import Any
 
 from msgspec import Struct, field
 
-from ...compiler import FIRST_TABLE, MAX_WEIGHTS, Pass, Plan, Shader
+from ...compiler import FIRST_TABLE, LOCAL_SIZE, MAX_WEIGHTS, Pass, Plan, Shader
 from ...errors import DeviceError, describe_owner
 from ...resources.machine import available_cores, machine_memory, resident_memory
 from ...resources.program import module_command
@@ -237,7 +237,7 @@ def _count_trials(plan: Plan, render_pass: Pass, software: bool) -> float:
     """
     if render_pass.shader.form == "compute":
         groups = float(math.prod(render_pass.groups))
-        return groups / available_cores() if software else groups * SIDE**2 / GPU_PIXELS
+        return groups / available_cores() if software else groups * LOCAL_SIZE / GPU_PIXELS
     width, height = plan.surfaces[render_pass.targets[0]].size
     if software:
         return width * height / (_shrink(width) * _shrink(height)) / available_cores()
