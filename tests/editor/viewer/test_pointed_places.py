@@ -48,6 +48,18 @@ def test_scopes_are_about_as_wide_as_screens(size: tuple[float, float], count: i
     assert scopes_panel._columns(*size, count) == columns  # pyright: ignore[reportPrivateUsage]
 
 
+def test_no_other_number_of_columns_makes_scopes_more_like_screens() -> None:
+    """A scope that is twice as wide as 16:10 is as bad as one that is twice as high."""
+    chance = np.random.default_rng(4)
+    for _ in range(300):
+        (width, height), count = chance.uniform(50.0, 2000.0, 2), int(chance.integers(1, 9))
+        columns = np.arange(1, count + 1)
+        shapes = width / columns / (height / np.ceil(count / columns))
+        errors = abs(np.log(shapes / 1.6))
+        chosen = scopes_panel._columns(width, height, count)  # pyright: ignore[reportPrivateUsage]
+        assert errors[chosen - 1] == pytest.approx(errors.min(), abs=1e-9)
+
+
 def test_the_vectorscope_is_square_in_the_middle() -> None:
     square = scopes_panel._square  # pyright: ignore[reportPrivateUsage]
     assert square((10.0, 20.0, 110.0, 60.0)) == (40.0, 20.0, 80.0, 60.0)
