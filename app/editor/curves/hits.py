@@ -17,8 +17,9 @@ REACH = 7.0
 """Pixels (at UI scale 1) from the middle of a key at which it can be grabbed."""
 
 SIDES: tuple[Side, Side] = ("left", "right")
-KEYS_BEYOND = 12.0
-"""Pixels beyond the view in which keys are still drawn and hit: their marks are that wide."""
+KEYS_BEYOND = 36.0
+"""Pixels beyond the view in which keys are still drawn and hit: their marks are 12 wide, and three times that on the
+largest interface."""
 
 
 class Mark(NamedTuple):
