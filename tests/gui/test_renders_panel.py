@@ -168,6 +168,7 @@ def test_renders_wait_and_are_stopped(gui, long_shot: Path) -> None:
         ui.shot("queue_cancelled.png")
         at = sorted(exports.all, key=lambda one: -one.ended_at).index(first)
         ui.click(f"again {at}")
+        ui.until(lambda: exports.all[0] is not first)
         ended(ui, 3)
         assert exports.all[0].state == "done" and exports.all[0].reused >= 1, exports.all[0].failure
         assert len(list(long_shot.parent.glob("a.*.png"))) == LONG
