@@ -139,7 +139,13 @@ class MediaProvider:
         mark = _conversion_mark(picture, sandbox=self.sandbox) if color else ""
         half = layer.is_half and not (mark and _changes_numbers(picture, layer.full_name, sandbox=self.sandbox))
         return PictureProbe(
-            header.size, half, header.fingerprint + mark, header.by_rows, header.overscan, header.pixel_aspect
+            header.size,
+            half,
+            header.fingerprint + mark,
+            header.by_rows,
+            header.overscan,
+            header.pixel_aspect,
+            finite=color,
         )
 
     def find_plain_view(self, picture: Picture) -> str | None:

@@ -26,6 +26,8 @@ class PictureProbe(Struct, frozen=True):
     """Its frame and all pixels that it has around it; None where there are none."""
     pixel_aspect: float = 1.0
     """The width of a pixel over its height."""
+    finite: bool = False
+    """Whether reading it leaves neither NaN nor infinity."""
 
 
 class FrameFile(Struct, frozen=True):

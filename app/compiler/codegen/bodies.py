@@ -6,7 +6,7 @@ from collections.abc import Set
 
 from halation.nodes import Edge, glsl_type
 
-from ..ir import BLOCK, MAX_WEIGHTS, Accessor, Convolve, Reduce, Ref
+from ..ir import BLOCK, MAX_WEIGHTS, Accessor, Convolve, Read, Reduce, Ref
 from .names import ShaderNames
 
 LONG_STRIP = 8
@@ -32,9 +32,10 @@ def write_accessor(names: ShaderNames, item: Accessor, edge: Edge, used_words: S
     Places are limited to 2^24, up to which floats count single pixels: GLSL leaves open what a larger float is as an
     int.
     """
-    name, glsl, has = item.name, item.glsl, "true"
+    name, glsl, has, is_finite = item.name, item.glsl, "true", False
     if isinstance(item.operand, Ref):
-        size = names.program.shape(item.operand).size
+        size, op = names.program.shape(item.operand).size, names.program.ops[item.operand.op]
+        is_finite = names.by_image and isinstance(op, Read) and op.finite
         names.uniform("ivec2", size, f"{name}_size")
         extent, has = names.program.extents.get(item.operand), f"inside(p, {name}_size)"
         if extent and edge in ("clamp", "black"):
@@ -54,7 +55,9 @@ def write_accessor(names: ShaderNames, item: Accessor, edge: Edge, used_words: S
     return [
         *([f"bool {name}_has(ivec2 p) {{ return {has}; }}"] if f"{name}_has" in used_words else []),
         f"{glsl} {name}_raw(ivec2 p) {{ return {value}; }}",
-        f"{glsl} {name}_at(ivec2 p) {{ {glsl} c = {name}_raw(p); return is_hole(c) ? {glsl}(0.0) : c; }}",
+        f"{glsl} {name}_at(ivec2 p) {{ return {name}_raw(p); }}"
+        if is_finite
+        else f"{glsl} {name}_at(ivec2 p) {{ {glsl} c = {name}_raw(p); return is_hole(c) ? {glsl}(0.0) : c; }}",
         f"{glsl} {name}_near(vec2 p) {{",
         "    p = clamp(p, -16777216.0, 16777216.0) - 0.5;",
         "    vec2 corner = floor(p), t = p - corner;",

@@ -45,6 +45,8 @@ class Read(SourceOp, frozen=True):
     """The pixels that the file has, where they are more than the frame."""
     pixel_aspect: float = 1.0
     """The width of a pixel over its height, as the file is to be shown."""
+    finite: bool = False
+    """True if no pixel is NaN or infinite."""
 
     def find_upload(self, output: int) -> Picture:
         return self.picture

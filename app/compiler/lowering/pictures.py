@@ -105,8 +105,9 @@ class PictureBuilder:
         by_rows = probed.by_rows and reduction == 1
         picture = replace(picture, pixels=None, by_rows=by_rows, overscan=window is not None, reduction=reduction)
         shape = PictureShape(scale_size(probed.size, 1 / reduction), picture.width, picture.kind is not Kind.IMAGE)
+        finite = probed.finite and reduction == 1  # the sum of large neighbors may be infinite
         ref = self._builder.add(
-            Read((shape,), owner, picture, probed.fingerprint, probed.half, window, probed.pixel_aspect)
+            Read((shape,), owner, picture, probed.fingerprint, probed.half, window, probed.pixel_aspect, finite)
         )
         return self.fit(ref, size, owner)
 
@@ -115,7 +116,7 @@ class PictureBuilder:
         picture = replace(picture, color=self._color)
         probed = self._probe(picture, owner)
         shape = PictureShape(probed.size, picture.width, picture.kind is not Kind.IMAGE)
-        return self._builder.add(Read((shape,), owner, picture, probed.fingerprint, probed.half))
+        return self._builder.add(Read((shape,), owner, picture, probed.fingerprint, probed.half, finite=probed.finite))
 
     def collect_resources(
         self, inputs: NodeInputs, missing: Missing, find_settings: Callable[[float], Mapping[str, Any]]
