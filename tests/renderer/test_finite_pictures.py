@@ -65,3 +65,13 @@ def test_data_and_arrays_have_holes_that_count_as_zero(renderer: Renderer, tmp_p
         request = RenderRequest({"image": source})
         drawn = renderer.render(make_graph(DEPTH, Kind.FIELD, 1), request)["out"]
         assert drawn[..., :1][usual] == pytest.approx(wanted[usual], rel=1e-5, abs=1e-5)
+
+
+def test_data_that_is_shown_as_color_keeps_its_infinity(renderer: Renderer, tmp_path: Path) -> None:
+    """Depth in an image is gray: its infinity stays where it is, and is no neighbor."""
+    depth = write(tmp_path / "z.exr", ("Z",))
+    request = RenderRequest({"image": tmp_path / "z.exr"})
+    drawn = renderer.render(make_graph(COLOR, Kind.IMAGE, 4), request)["out"][..., :1]
+    wanted = add_neighbors(np.where(np.isfinite(depth), depth, 0.0))
+    usual = np.abs(wanted) < 1e30
+    assert drawn[usual] == pytest.approx(wanted[usual], rel=1e-5, abs=1e-5)
