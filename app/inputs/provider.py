@@ -138,15 +138,8 @@ class MediaProvider:
         color = picture.kind.is_color and not layer.is_data
         mark = _conversion_mark(picture, sandbox=self.sandbox) if color else ""
         half = layer.is_half and not (mark and _changes_numbers(picture, layer.full_name, sandbox=self.sandbox))
-        return PictureProbe(
-            header.size,
-            half,
-            header.fingerprint + mark,
-            header.by_rows,
-            header.overscan,
-            header.pixel_aspect,
-            finite=color,
-        )
+        details = header.by_rows, header.overscan, header.pixel_aspect
+        return PictureProbe(header.size, half, header.fingerprint + mark, *details, finite=color)
 
     def find_plain_view(self, picture: Picture) -> str | None:
         """The view that encodes color as a picture for a screen has it, "" for light of a scene, None for data.
