@@ -64,6 +64,8 @@ class Ui:
     is_seen: bool = True
     """False lays the window out and hits what is there, and draws no panel: a quarter of the processor time of a test
     is saved. Screenshots are of a window that is seen."""
+    last_click: str = "none"
+    """Where the last click was, and what was there then."""
     _asked: list[Callable[[], object]] = field(default_factory=list)
 
     @property
@@ -127,6 +129,7 @@ class Ui:
     def click(self, place: str | Point, button: int = 0, fraction: Point = (0.5, 0.5), keys: str = "") -> None:
         """Click, holding modifier keys such as "Ctrl"."""
         self.move(place, fraction)
+        self.last_click = f"at {self.at(place, fraction)}, on {place}"
         with self.held(keys):
             self.ctx.mouse_click(button)
         self.wait(3)
@@ -201,6 +204,17 @@ class Ui:
         self.ctx.window_focus(f"//{title}")
         self.wait(4)
 
+    def describe(self) -> str:
+        """What helps to see why a test failed: the messages, what the mouse is over, and where it clicked last."""
+        said = "".join(f"\n  {entry.level}: {entry.sentence}\n{entry.detail}" for entry in self.editor.log.entries)
+        window, mouse = imgui.get_current_context().hovered_window, imgui.get_io().mouse_pos
+        over = [name for name, (left, top, right, bottom) in self.editor.places.items()
+                if left <= mouse.x <= right and top <= mouse.y <= bottom]  # fmt: skip
+        return (
+            f"last click: {self.last_click}\nmouse at ({mouse.x}, {mouse.y}), over {over} of the window "
+            f"'{window.name if window else ''}'\nmessages: {said or 'none'}"
+        )
+
     def shot(self, name: str) -> None:
         """A screenshot for who sets HALATION_SHOTS: to draw all pixels and to write them takes 0.7 s of a processor."""
         if SHOTS:
@@ -273,7 +287,11 @@ def drive(
         if likes:
             ui.editor.store.change(**likes)
         ui.wait(8)
-        body(ui)
+        try:
+            body(ui)
+        except Exception as error:
+            error.add_note(ui.describe())
+            raise
         found = [entry for entry in ui.editor.log.entries if entry.detail]
         assert faulty or not found, "\n".join(f"{entry.sentence}\n{entry.detail}" for entry in found)
 

@@ -264,7 +264,8 @@ def test_a_flipbook_follows_what_is_being_written(gui, shot: Path) -> None:
     def body(ui) -> None:
         to_renders(ui)
         ui.click("render")
-        ui.until(lambda: "play 0" in ui.editor.places, 60)
+        (export,) = ui.editor.exports.all
+        ui.until(lambda: bool(export.written_files), 60)
         ui.click("play 0")
         book = ui.editor.stage.flipbook
         assert book is not None

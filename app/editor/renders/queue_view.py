@@ -53,6 +53,7 @@ class _Button(NamedTuple):
     doc: str
     act: Callable[[], object]
     lit: bool = False
+    enabled: bool = True
 
 
 class RenderQueueView:
@@ -148,58 +149,47 @@ class RenderQueueView:
         for place, button in enumerate(buttons):
             if place:
                 imgui.same_line()
-            if quiet_button(self._context, button.icon, f"{button.name} {index}", button.doc, lit=button.lit):
+            label, lit, enabled = f"{button.name} {index}", button.lit, button.enabled
+            if quiet_button(self._context, button.icon, label, button.doc, lit=lit, enabled=enabled):
                 self._context.log.attempt(button.act)
         imgui.pop_style_var()
         self._draw_compare_menu(index, export)
 
     def _buttons(self, index: int, export: QueuedRender, position: int) -> list[_Button]:
-        buttons: list[_Button] = []
-        folder = export.folder
-        first = (
-            export.written_files[-1] if export.has_many_files and export.written_files else export.destinations[0][1]
-        )
-        over = export.state not in ("running", "waiting")
-        if export.written_files and not export.has_many_files:  # many files are no sequence
-            doc = translate("Compare it with another version, in the viewer")
-            buttons.append(
-                _Button(
-                    icons.ICON_FA_PLAY,
-                    "play",
-                    translate("Play it in the viewer"),
-                    partial(_play, self._context, export),
-                )
-            )
-            buttons.append(
-                _Button(icons.ICON_FA_TABLE_COLUMNS, "compare", doc, partial(imgui.open_popup, f"compare {index}"))
-            )
-        if export.state == "waiting" and position > len(self._context.exports.running):
-            sooner = partial(self._context.exports.move, export, -1)
+        """The buttons of a row, from left to right; its right border is where they are lined up.
+
+        What comes or goes is left of what stays: none moves from under the mouse while a render goes on.
+        """
+        exports, over, buttons = self._context.exports, export.state not in ("running", "waiting"), list[_Button]()
+        if export.state == "waiting" and position > len(exports.running):
+            sooner = partial(exports.move, export, -1)
             buttons.append(_Button(icons.ICON_FA_ARROW_UP, "earlier", translate("Move up"), sooner))
         if export.state in ("failed", "cancelled"):
-            doc = (
-                translate("Continue: frames that are up to date are skipped") if export.done else translate("Try again")
-            )
-            buttons.append(
-                _Button(icons.ICON_FA_ROTATE_RIGHT, "again", doc, partial(self._context.exports.resume, export))
-            )
+            again = translate("Continue: frames that are up to date are skipped")
+            doc = again if export.done else translate("Try again")
+            buttons.append(_Button(icons.ICON_FA_ROTATE_RIGHT, "again", doc, partial(exports.resume, export)))
         if export.notes:
-            lit = export in self._open
-            buttons.append(
-                _Button(
-                    icons.ICON_FA_LIST_UL, "notes", translate("Show messages"), partial(self._toggle_notes, export), lit
-                )
-            )
-        if over:
-            copy = partial(self._context.clipboard.put, str(first))
-            buttons.append(_Button(icons.ICON_FA_COPY, "copy path", translate("Copy the path"), copy))
-        show = partial(_open, self._context, folder)
-        buttons.append(
-            _Button(icons.ICON_FA_FOLDER_OPEN, "open folder", translate("Show {folder}", folder=folder), show)
+            toggle, lit = partial(self._toggle_notes, export), export in self._open
+            buttons.append(_Button(icons.ICON_FA_LIST_UL, "notes", translate("Show messages"), toggle, lit))
+        if export.state != "waiting" and not export.has_many_files:  # many files are no sequence
+            buttons.extend(self._make_play_buttons(index, export))
+        buttons.append(self._make_copy_button(export) if over else _make_cancel_button(export))
+        doc, show = translate("Show {folder}", folder=export.folder), partial(_open, self._context, export.folder)
+        return [*buttons, _Button(icons.ICON_FA_FOLDER_OPEN, "open folder", doc, show)]
+
+    def _make_copy_button(self, export: QueuedRender) -> _Button:
+        written = export.has_many_files and export.written_files
+        path = written[-1] if written else export.destinations[0][1]
+        copy = partial(self._context.clipboard.put, str(path))
+        return _Button(icons.ICON_FA_COPY, "copy path", translate("Copy the path"), copy)
+
+    def _make_play_buttons(self, index: int, export: QueuedRender) -> tuple[_Button, _Button]:
+        doc, begun = translate("Compare it with another version, in the viewer"), bool(export.written_files)
+        choose, play = partial(imgui.open_popup, f"compare {index}"), partial(_play, self._context, export)
+        return (
+            _Button(icons.ICON_FA_TABLE_COLUMNS, "compare", doc, choose, enabled=begun),
+            _Button(icons.ICON_FA_PLAY, "play", translate("Play it in the viewer"), play, enabled=begun),
         )
-        if not over:
-            buttons.append(_make_cancel_button(export))
-        return buttons
 
     def _draw_compare_menu(self, index: int, export: QueuedRender) -> None:
         """Draw the menu of renders to compare with."""
