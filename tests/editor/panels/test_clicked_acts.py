@@ -22,7 +22,7 @@ PRESSED = "button", "checkbox", "radio_button", "small_button", "selectable", "m
 
 AS_IT_IS = ("viewer.fit", "viewer.actual", "viewer.neutral", "time.first", "page Interface", "theme dark",
             "category all", "button view bloom", "viewer.save", "info", "measure node", "Selection", "Whole graph",
-            "selected", "export frame", "history 4")  # fmt: skip
+            "selected", "export frame", "history 4", "compare 2")  # fmt: skip
 """Buttons of what is so already, or that a picture must be there for."""
 
 SWITCHES = "render resume", "export preview"
