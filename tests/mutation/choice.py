@@ -78,7 +78,8 @@ def select_tests(path: Path, line: int) -> list[list[str]]:
         tests, driving = ([test for test in some if test not in recorded] for some in (tests, driving))
     is_outside = path.suffix == ".py" and is_outside_functions(path, line)  # what a constant changes, was not recorded
     first = [test for test in (nearest if is_outside else tests) if test in nearest]
-    first += dict.fromkeys(name for name in (*runners, *slow) if file_of(name) in nearest.keys() - {*first})
+    seen = dict.fromkeys(name for name in (*runners, *slow) if file_of(name) in nearest.keys() - {*first})
+    first, late = [*first, *(name for name in seen if name not in listed)], [name for name in seen if name in listed]
     tests = [test for test in tests if test not in nearest]
     near = [*dict.fromkeys(file_of(name) for name in runners)][:SLOW_FILES]
     runners, slow = ([name for name in some if file_of(name) not in nearest] for some in (runners, slow))
@@ -86,7 +87,7 @@ def select_tests(path: Path, line: int) -> list[list[str]]:
     quick = [*tests, *(f"--deselect={name}" for name in listed if file_of(name) in tests)] if tests else []
     pages = [PAGES] if path.suffix == ".py" else []
     guides = [*GUIDES] if path.parts[:2] == EDITOR else []
-    return [words for words in (first, kin, guides, pages, far, quick, slow, driving) if words]
+    return [words for words in (first, kin, guides, pages, late, far, quick, slow, driving) if words]
 
 
 def file_of(name: str) -> str:
