@@ -87,7 +87,7 @@ def select_tests(path: Path, line: int) -> list[list[str]]:
     quick = [*tests, *(f"--deselect={name}" for name in listed if file_of(name) in tests)] if tests else []
     pages = [PAGES] if path.suffix == ".py" else []
     guides = [*GUIDES] if path.parts[:2] == EDITOR else []
-    return [words for words in (first, kin, guides, pages, late, far, quick, slow, driving) if words]
+    return [words for words in (first, guides, kin, pages, late, far, quick, slow, driving) if words]
 
 
 def file_of(name: str) -> str:

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import random
 import shutil
-from collections.abc import Callable
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,9 +19,18 @@ from still_screens import Screens
 from still_window import Drawing
 
 
+def make_folder() -> Path:
+    """A new folder whose path is as wide on every machine: it moves what is drawn beside it."""
+    root = Path("/tmp" if sys.platform == "linux" else tempfile.gettempdir())
+    while True:
+        with suppress(FileExistsError):
+            (folder := root / f"still{random.randrange(10**7, 10**8)}").mkdir()
+            return folder
+
+
 @pytest.fixture(scope="session")
-def draw(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., dict[str, Drawing]]:
-    folder = tmp_path_factory.mktemp("still")
+def draw() -> Iterator[Callable[..., dict[str, Drawing]]]:
+    folder = make_folder()
     path = write_many_things(folder)
 
     @cache
@@ -30,4 +44,5 @@ def draw(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., dict[str, Dr
                 drawings[name] = still.pane.copy()
         return drawings
 
-    return draw
+    yield draw
+    shutil.rmtree(folder, ignore_errors=True)
