@@ -7,12 +7,12 @@ from itertools import combinations
 import pytest
 from halation.authoring.edits.align import align_elements
 from halation.authoring.edits.arranging import arrange
-from halation.authoring.edits.decor import add_frame, find_frame_members
+from halation.authoring.edits.decor import add_frame, find_frame_members, set_box
 from halation.authoring.edits.element_id import ElementId
 from halation.authoring.edits.elements import list_decor, list_elements, with_places
 from halation.authoring.edits.layering import layer_numbers
 from halation.authoring.edits.layers import place_boxes
-from halation.authoring.edits.layout import element_links, pin_places, positions, shift_off
+from halation.authoring.edits.layout import bounds, element_links, pin_places, positions, shift_off
 from halation.authoring.edits.routes import add_dot
 from halation.authoring.edits.sizes import element_size
 from halation.errors import GraphError
@@ -95,6 +95,20 @@ def test_arranging_takes_frames_along():
     members = find_frame_members(graph, frame, positions(graph))
     after = arrange(graph, None, positions(graph))
     assert find_frame_members(after, frame, positions(after)) >= {"n0", "n1"} <= members
+
+
+def test_a_frame_is_as_far_from_its_members_on_each_side_after_they_are_arranged():
+    graph = with_places(pin_places(chain(2)), {ElementId("n0"): (0.0, 300.0), ElementId("n1"): (40.0, 800.0)})
+    members = [ElementId("n0"), ElementId("n1")]
+    graph, frame = add_frame(graph, members, positions(graph))
+    left, top, right, bottom = bounds(graph, members, positions(graph))
+    wanted = (11.0, 43.0, 29.0, 7.0)
+    graph = set_box(graph, frame, left - 11.0, top - 43.0, right - left + 40.0, bottom - top + 50.0)
+    after = arrange(graph, None, positions(graph))
+    inner, outer = (bounds(after, some, positions(after)) for some in (members, [frame]))
+    assert inner != (left, top, right, bottom)
+    room = inner[0] - outer[0], inner[1] - outer[1], outer[2] - inner[2], outer[3] - inner[3]
+    assert room == pytest.approx(wanted)
 
 
 def test_arranging_removes_dots_that_links_do_not_need():
