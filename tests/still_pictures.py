@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from halation.authoring.commands import AnimateValues, ReplaceGraph, SetFrameRange
+from halation.authoring.commands import AnimateValues, MovePoints, ReplaceGraph, SetFrameRange
 from halation.authoring.preview.pass_pictures import PassPicture
 from halation.editor.tutorials.course import COURSE
 from halation.export.surface_picture import SurfacePicture
 from halation.graph import Expression, Graph, Input, Key, Keys, Output, Port
-from halation.nodes import Kind, Node, Value, catalogue
+from halation.nodes import Kind, Node, RotoShape, Value, catalogue, join_points, name_roto_shapes, split_points
 from halation.nodes.input.read_image import ReadImage
 from imgui_bundle import imgui
 from still_editor import StillEditor
@@ -60,6 +60,21 @@ def show_handles(still: StillEditor) -> Screens:
         still.show("Viewer", 2)
         still.compute()
         yield id, "Viewer"
+    points, box = Port("node", "shapes.box.points"), join_points(((0.3, 0.3), (0.7, 0.3), (0.7, 0.7), (0.3, 0.7)))
+    shapes = name_roto_shapes(box=RotoShape(points=box))
+    graph = Graph().add("node", catalogue()["roto"](shapes=shapes)).animate(points, Keys((Key(1, box), Key(9, box))))
+    session.apply(ReplaceGraph("Start", graph))
+    still.select("node")
+    session.views.show(Port("node", next(iter(catalogue()["roto"].outputs))))
+    session.time.seek(5)
+    moved = [*split_points(box)]
+    moved[2] = (0.8, 0.8, *moved[2][2:])
+    session.apply(MovePoints(points, tuple(moved), "Move", singly=True))
+    for frame in (5, 3):
+        session.time.seek(frame)
+        still.show("Viewer", 2)
+        still.compute()
+        yield f"keyed point at {frame}", "Viewer"
 
 
 def show_viewer(still: StillEditor) -> Screens:

@@ -166,7 +166,7 @@ def png(path: Path, codes: Array, *chunks: tuple[bytes, bytes]) -> Path:
     return path
 
 
-@pytest.mark.parametrize("gamma", [0.25, 0.35, 0.4, 0.45455, 0.55, 0.7, 1.0, 1.4, 2.5])
+@pytest.mark.parametrize("gamma", [0.25, 0.35, 0.4, 0.45455, 0.5, 0.55, 0.7, 1.0, 1.4, 2.5])
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
 def test_gammas_of_png(tmp_path, gamma, dtype):
     """The sample is light to the power of gAMA (PNG 1.2, 10.5)."""

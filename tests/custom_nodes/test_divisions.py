@@ -30,6 +30,9 @@ PIXEL = {"image": np.ones((1, 1, 4), np.float32)}
         ("x = (a + b) / f(c).y[2];", "x = halation_quotient((a + b) , f(c).y[2]);"),
         ("return a / b;", "return halation_quotient(a , b);"),
         ("if (c) x = a-- / ++b;", "if (c) x = halation_quotient(a-- , ++b);"),
+        ("n = a / (b > 0 ? 0 : 3);", "n = halation_quotient(a , (b > 0 ? 0 : 3));"),
+        ("n = a / (b > 0 ? 3 : 0);", "n = halation_quotient(a , (b > 0 ? 3 : 0));"),
+        ("n = a / (1 ? 0 : 3);", "n = halation_quotient(a , (1 ? 0 : 3));"),
     ],
 )
 def test_how_divisions_are_written(text: str, guarded: str) -> None:
@@ -43,6 +46,7 @@ def test_how_divisions_are_written(text: str, guarded: str) -> None:
         "vec3 a; void f(int n) { a /= float(n); a = a * 2.0 / n; a = n / (a + 1); }",
         "int f(int n) { return n / 2 + n % 3 + n / (4 - 1); }",
         "const int N = 4; int f(int n) { return n / N; }",
+        "const int N = 0; int f(int n) { return n / (N ? 0 : 3) + n % (1 ? 3 : 0); }",
         "ivec2 f(ivec2 n) { return n / ivec2(2, 3) + n % 2; }",
         "struct S { float r; }; float f(S s) { return s.r / s.r; }",
         "float f(vec4 c) { return c.r / c.g / max(c.b, 0) / dot(c, c); }",

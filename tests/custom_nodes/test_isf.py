@@ -111,7 +111,9 @@ def test_every_type_of_value(run: Run) -> None:
 
 
 def test_defaults_that_nobody_wrote() -> None:
-    """The middle of a point's range, opaque black, and of a number 0 or the end of the range that is nearest to it."""
+    """The middle of a point's range, opaque black, of a number 0 or the end of the range that is nearest to it, and the
+    first of several choices, as of one that is none of them.
+    """
     kind = shader(
         isf(
             "gl_FragColor = vec4(1.0);",
@@ -122,6 +124,8 @@ def test_defaults_that_nobody_wrote() -> None:
             {"NAME": "above", "TYPE": "float", "MIN": 2.0, "MAX": 5.0},
             {"NAME": "below", "TYPE": "float", "MIN": -5.0, "MAX": -1.0},
             {"NAME": "how_much_noise", "TYPE": "float", "MIN": 0.0, "MAX": 1.0},
+            {"NAME": "mode", "TYPE": "long", "VALUES": [7, 3], "LABELS": ["Seven", "Three"]},
+            {"NAME": "other", "TYPE": "long", "VALUES": [7, 3], "LABELS": ["Seven", "Three"], "DEFAULT": 5},
         )
     )
     assert kind.values["how_much_noise"].label == "how much noise"
@@ -133,6 +137,8 @@ def test_defaults_that_nobody_wrote() -> None:
         "above": 2.0,
         "below": -1.0,
         "how_much_noise": 0.0,
+        "mode": "Seven",
+        "other": "Seven",
     }
 
 

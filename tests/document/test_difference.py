@@ -100,6 +100,15 @@ def test_what_is_said(after: Graph, wanted: list[str]) -> None:
     assert lines(BASE, after) == wanted
 
 
+def test_values_of_a_node_that_became_another_are_told_by_their_names() -> None:
+    before = BASE.set(Port("blur", "sigma"), 8.5)
+    assert lines(before, BASE.replace("blur", NODES["box_blur"](radius=9.0))) == [
+        "~ node blur: gaussian_blur -> box_blur",
+        "~ blur.radius: not set -> 9 px",
+        "~ blur.sigma: 8.5 px -> not set",
+    ]
+
+
 def test_keys_are_told_one_by_one() -> None:
     def keyed(*keys: Key) -> Graph:
         return BASE.animate(Port("blur", "sigma"), Keys(keys))

@@ -203,6 +203,8 @@ def test_two_pictures_tell_motion(sign: tuple[float, float], light: float) -> No
     stored = np.zeros((HEIGHT, WIDTH, 2)) + np.multiply((3.0, 2.0), sign)
     found = evidence.match_velocity_with_pictures(stored, picture(x - 3.0, y - 2.0), picture(x, y))
     assert found is not None and found.scale == sign and found.is_measured
+    along, down = sign[0] > 0.0, sign[0] == sign[1]
+    assert ("along with" if along else "against") in found.reason and f"y {'down' if down else 'up'}" in found.reason
     assert (
         evidence.match_velocity_with_pictures(stored, np.ones((HEIGHT, WIDTH, 3)), np.ones((HEIGHT, WIDTH, 3))) is None
     )

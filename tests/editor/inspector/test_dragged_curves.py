@@ -12,8 +12,8 @@ import pytest
 from drawn_shapes import Point
 from halation.authoring.commands import ReplaceGraph
 from halation.graph import Graph, Port
-from imgui_bundle import imgui
 from still_editor import StillEditor, open_still_editor
+from still_hand import Hand
 from toy_nodes import Tint
 
 FIELD = "field tint.curve"
@@ -54,32 +54,6 @@ def find_disks(still: StillEditor) -> list[Point]:
     left, top, right, bottom = still.places[FIELD]
     disks = [shape.points[0] for shape in still.show("Inspector", 1) if shape.kind == "disk"]
     return sorted((x, y) for x, y in disks if left <= x <= right and top <= y <= bottom)
-
-
-class Hand:
-    """The mouse over the inspector, place by place."""
-
-    def __init__(self, still: StillEditor) -> None:
-        self._still, self._io = still, imgui.get_io()
-
-    def move(self, at: Point) -> None:
-        self._still.pane.point(at)
-        self._still.show("Inspector", 2)
-
-    def press(self, button: int = 0) -> None:
-        self._io.add_mouse_button_event(button, True)
-        self._still.show("Inspector", 1)
-
-    def let_go(self, button: int = 0) -> None:
-        self._io.add_mouse_button_event(button, False)
-        self._still.show("Inspector", 2)
-
-    def drag(self, *places: Point) -> None:
-        self.move(places[0])
-        self.press()
-        for place in places[1:]:
-            self.move(place)
-        self.let_go()
 
 
 def is_near(one: Point, other: Point) -> bool:
