@@ -59,6 +59,26 @@ def test_what_needs_no_guard_stays_as_it_is(text: str) -> None:
 
 
 @pytest.mark.parametrize(
+    ("text", "number"),
+    [
+        ("1 + 2 * 3", 7), ("7 - 2 - 3", 2), ("(1 + 2) * 3", 9), ("1 << 2 + 1", 8), ("64 >> 2 >> 1", 8),
+        ("8 - 3 << 1", 10), ("false == 0 < 2 ? 5 : 6", 6),
+        ("1 + 1 == 2 ? 5 : 6", 5), ("2 < 1 ? 5 : 6", 6), ("1 << 1 < 3 ? 5 : 6", 5), ("2 < 1 == 3 < 2 ? 5 : 6", 5),
+        ("1 < 2 == 1 < 2 ? 5 : 6", 5), ("2 != 1 < 2 ? 5 : 6", 5), ("5 & 3 ^ 8", 9), ("6 & 3 | 8 ^ 1", 11),
+        ("1 | 6 & 4", 5), ("4 ^ 6 & 3", 6), ("1 | 4 ^ 5", 1), ("1 == 2 ? 7 : 1 == 3 ? 8 : 9", 9), ("true ? 3 : 4", 3),
+        ("false ? 3 : 4", 4), ("-2 * -3", 6), ("~5", -6), ("-~5", 6), ("~-5", 4), ("+7", 7), ("- -7", 7),
+        ("ivec3(3, 4, 5).y", 4), ("ivec3(3, 4, 5).zx.x", 5), ("ivec4(6).q", 6), ("ivec2(8, 9).g", 9),
+        ("min(3, max(1, 2))", 2), ("int(2.75)", 2), ("(1, 2)", 2), ("0x1F", 31), ("3 * int(uint(2)) + 1", 7),
+    ],
+)  # fmt: skip
+def test_the_number_of_a_constant_is_that_of_the_language(text: str, number: int) -> None:
+    """By the precedence of GLSL: only a divisor that is known, and not 0, needs no guard."""
+    for more, is_known in ((1, True), (0, False), (-2, True)):
+        code = f"int f(int n) {{ return n / (({text}) - ({number}) + {more}); }}"
+        assert (guard_divisions(code) == code) is is_known, more
+
+
+@pytest.mark.parametrize(
     ("text", "sentence"),
     [
         ("\nv[i++] /= w;", "may change nothing else"),

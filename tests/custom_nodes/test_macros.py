@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from conftest import Run
 from halation.custom_nodes import Code, CodeFault, node_type
-from halation.glsl.conditions import evaluate_condition
+from halation.glsl.conditions import DEEPEST, evaluate_condition
 from halation.glsl.macros import MOST_TOKENS, expand_macros
 from halation.glsl.tokens import GlslFault, split_tokens
 
@@ -108,6 +108,16 @@ def test_expansion(text: str, expanded: str) -> None:
 )
 def test_conditions_have_the_numbers_of_c(text: str, number: int) -> None:
     assert evaluate_condition(text.split(), 1) == number
+
+
+@pytest.mark.parametrize(("before", "after"), [("(", ")"), ("-", "")])
+def test_conditions_are_as_deep_as_they_may_be(before: str, after: str) -> None:
+    def nest(count: int) -> list[str]:
+        return [*(before * count), "1", *(after * count)]
+
+    assert evaluate_condition(nest(DEEPEST), 1) == 1
+    with pytest.raises(GlslFault, match="cannot be read"):
+        evaluate_condition(nest(DEEPEST + 1), 1)
 
 
 @pytest.mark.parametrize("text", ["", "08", "1 2", "( 1", ")", "1 +", "$", "1.5", "0x", "= 1"])

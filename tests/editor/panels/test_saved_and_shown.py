@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from gui_renders import list_renders
 from halation import document
+from halation.authoring.background.graph_export import ExportOutcome
 from halation.authoring.commands import MakeGroup
+from halation.editor.exporting import dialog as exporting
 from halation.editor.renders import queue_view
 from halation.graph import Group, Port
 from halation.resources.sandbox import UNRESTRICTED
@@ -51,6 +54,33 @@ def test_who_writes_asks_for_a_new_file_and_who_reads_for_one_that_is_there(tmp_
         still.show("Viewer", 2)
         browse = still.editor.dialogs.browse
         assert browse is not None and browse.saving is ("save" in action) and bool(browse.name) is browse.saving
+
+
+@pytest.mark.parametrize(
+    ("name", "written"), [("page", "page.html"), ("page.html", "page.html"), ("page.htm", "page.htm")]
+)
+def test_an_export_gets_the_ending_of_its_kind_where_it_has_none(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, written: str
+) -> None:
+    exports = list[Path]()
+
+    def begin(root: object, choices: object, output: Path, *more: object) -> SimpleNamespace:
+        exports.append(output)
+        return SimpleNamespace(outcome=ExportOutcome(), choices=choices, output=output, stop=bool)
+
+    monkeypatch.setattr(exporting, "GraphExport", begin)
+    with open_still_editor(tmp_path, make_graph()) as still:
+        still.editor.dialogs.open.add("export")
+        still.show("Export", 4)
+        monkeypatch.setattr(imgui, "get_time", lambda: 1e3)  # the trial waits until nothing has changed for a while
+        still.click("Export", "export write")
+        browse = still.editor.dialogs.browse
+        assert browse is not None and browse.saving
+        browse.then(tmp_path / name)
+        dialog = still.find("Export")
+        assert isinstance(dialog, exporting.ExportDialog)
+        dialog.close()
+    assert exports[-1] == tmp_path / written
 
 
 @pytest.mark.parametrize("is_shown", [True, False])
