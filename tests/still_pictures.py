@@ -62,8 +62,8 @@ def show_handles(still: StillEditor) -> Screens:
         yield id, "Viewer"
     points, box = Port("node", "shapes.box.points"), join_points(((0.3, 0.3), (0.7, 0.3), (0.7, 0.7), (0.3, 0.7)))
     shapes = name_roto_shapes(box=RotoShape(points=box))
-    graph = Graph().add("node", catalogue()["roto"](shapes=shapes)).animate(points, Keys((Key(1, box), Key(9, box))))
-    session.apply(ReplaceGraph("Start", graph))
+    graph = Graph().add("node", catalogue()["roto"]()).set(Port("node", "shapes"), shapes)
+    session.apply(ReplaceGraph("Start", graph.animate(points, Keys((Key(1, box), Key(9, box))))))
     still.select("node")
     session.views.show(Port("node", next(iter(catalogue()["roto"].outputs))))
     session.time.seek(5)

@@ -1,0 +1,27 @@
+"""Where the form for a render and the queue of renders lie in their panel."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from gui_renders import list_renders
+from imgui_bundle import ImVec2, imgui
+from still_acts import make_graph
+from still_editor import open_still_editor
+
+
+@pytest.mark.parametrize("scale", [1.0, 2.0])
+@pytest.mark.parametrize(("room", "is_beside"), [(758.0, False), (762.0, True), (1500.0, True)])
+def test_the_queue_is_beside_the_form_where_there_is_room(
+    tmp_path: Path, scale: float, room: float, is_beside: bool
+) -> None:
+    with open_still_editor(tmp_path, make_graph(), size=(1e3, 1e3), scale=scale, screen=(4e3, 4e3)) as still:
+        still.editor.exports.all = list_renders()
+        padding = imgui.get_style().window_padding.x
+        still.pane.size = ImVec2(room * scale + 2.0 * padding, 1800.0 * scale)
+        still.show("Renders", 5)
+        left, _, _, bottom = still.places["render"]
+        row_left, row_top, _, _ = still.places["export 0"]
+        assert (row_left > left + 400.0 * scale and row_top < bottom) is is_beside
+        assert (row_top > bottom) is not is_beside
