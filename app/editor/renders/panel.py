@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 _FLAT = imgui.ChildFlags_.nav_flattened.value
 """The keyboard walks through both parts as one."""
+_STILL = int(imgui.WindowFlags_.no_scrollbar) | int(imgui.WindowFlags_.no_scroll_with_mouse)
+"""The parts are too high in the frame in which what is below the form grows. A scrollbar would take some of the width
+for that frame, and move the buttons of the queue away from who clicks on them."""
 _ROWS = 3
 """The rows of the form that are seen at least, however low the panel is."""
 _FORM, _WIDE = 420.0, 760.0
@@ -55,10 +58,11 @@ class RendersPanel:
             imgui.separator()
             self._queue.draw()
             return
+        least, gap = _ROWS * imgui.get_frame_height_with_spacing(), imgui.get_style().item_spacing.y
+        height = room.y - self._foot - gap
+        imgui.begin_child("parts", ImVec2(0.0, 0.0), _FLAT, _STILL if height >= least else 0)
         imgui.begin_group()
-        gap = imgui.get_style().item_spacing.y
-        height = max(room.y - self._foot - gap, _ROWS * imgui.get_frame_height_with_spacing())
-        imgui.begin_child("form", ImVec2(_FORM * scale, height), _FLAT)
+        imgui.begin_child("form", ImVec2(_FORM * scale, max(height, least)), _FLAT)
         draw_form(self._context, form)
         imgui.end_child()
         imgui.begin_child("start", ImVec2(_FORM * scale, 0.0), _FLAT | imgui.ChildFlags_.auto_resize_y.value)
@@ -69,4 +73,5 @@ class RendersPanel:
         imgui.same_line(0, 20 * scale)
         imgui.begin_child("queue", ImVec2(0, room.y), _FLAT)
         self._queue.draw()
+        imgui.end_child()
         imgui.end_child()

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 from gui_renders import list_renders
+from halation import document
+from halation.resources.sandbox import UNRESTRICTED
 from imgui_bundle import ImVec2, imgui
 from still_acts import make_graph
 from still_editor import open_still_editor
@@ -25,3 +27,18 @@ def test_the_queue_is_beside_the_form_where_there_is_room(
         row_left, row_top, _, _ = still.places["export 0"]
         assert (row_left > left + 400.0 * scale and row_top < bottom) is is_beside
         assert (row_top > bottom) is not is_beside
+
+
+def test_nothing_of_the_queue_moves_while_what_is_below_the_form_grows(tmp_path: Path) -> None:
+    """Files that a render has written are counted there, so it grows while somebody is about to click on the render."""
+    document.save(make_graph(), tmp_path / "shot.json", sandbox=UNRESTRICTED)
+    with open_still_editor(tmp_path, tmp_path / "shot.json", size=(1200.0, 360.0)) as still:
+        still.editor.store.note_folder("export", tmp_path / "x.exr")
+        still.editor.exports.all = list_renders()[:1]
+        still.show("Renders", 5)
+        before, start = still.places["open folder 0"], still.places["render"]
+        (tmp_path / "shot.exr").write_bytes(b"")
+        for _ in range(90):  # the disk is looked at again after a second
+            still.show("Renders", 1)
+            assert still.places["open folder 0"] == before
+        assert "render exists" in still.places and still.places["render"] == start
