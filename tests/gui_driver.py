@@ -128,8 +128,9 @@ class Ui:
 
     def click(self, place: str | Point, button: int = 0, fraction: Point = (0.5, 0.5), keys: str = "") -> None:
         """Click, holding modifier keys such as "Ctrl"."""
-        self.move(place, fraction)
-        self.last_click = f"at {self.at(place, fraction)}, on {place}"
+        point = self.at(place, fraction)
+        self.move(point)
+        self.last_click = f"at {point}, where {place} was"
         with self.held(keys):
             self.ctx.mouse_click(button)
         self.wait(3)
