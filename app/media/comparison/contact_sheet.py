@@ -114,6 +114,7 @@ def make_grouped_sheet(
             left, top, across = layout.rule(name)
             canvas[top : top + _RULE, left : left + across] = colors.get(name, _DIM)
     paper = oiio.ImageBuf(canvas)
+    del canvas  # the sheet of all nodes has 150 MB, and it is there twice now
     for name, group in groups.items():
         for (left, top), title in zip(layout.cells(name), group, strict=True):
             _label(paper, title, left, top + layout.cell[1] + round(1.3 * letters), layout.cell[0], letters)
@@ -297,7 +298,8 @@ def _encode_shown(light: Array) -> Array:
 
 def _read_light(paper: oiio.ImageBuf) -> Array:
     """The display values of what was drawn in sRGB."""
-    light = np.ascontiguousarray(paper.get_pixels(oiio.FLOAT), np.float32)
+    light = np.empty((paper.spec().height, paper.spec().width, paper.nchannels), np.float32)
     for top in range(0, len(light), _ROWS):
-        light[top : top + _ROWS] = decode_srgb(light[top : top + _ROWS])
+        roi = oiio.ROI(0, light.shape[1], top, min(top + _ROWS, len(light)))
+        light[top : top + _ROWS] = decode_srgb(np.asarray(paper.get_pixels(oiio.FLOAT, roi)))
     return light
