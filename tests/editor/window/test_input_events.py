@@ -95,6 +95,15 @@ def test_what_is_typed_behind_a_chord_is_text(queue: InputQueue) -> None:
     assert [name for _ in range(8) for name in frame(queue)] == ["X", "Z"] and not queue
 
 
+def test_text_without_a_key_has_the_modifiers_of_its_moment(queue: InputQueue) -> None:
+    """Input methods send it so. The library drops text that comes while Ctrl is held."""
+    queue.add_text(ord("é"))
+    press(queue, glfw.KEY_LEFT_CONTROL)
+    press(queue, glfw.KEY_S, glfw.MOD_CONTROL)
+    assert frame(queue) == [] and int(imgui.get_io().key_mods) == 0
+    assert [name for _ in range(3) for name in frame(queue)] == ["Ctrl+S"]
+
+
 def test_a_click_has_the_modifiers_of_its_moment(queue: InputQueue) -> None:
     press(queue, glfw.KEY_LEFT_SHIFT)
     queue.add_button(0, glfw.PRESS, glfw.MOD_SHIFT)
@@ -160,10 +169,15 @@ def test_text_arrives_in_one_frame_and_enter_behind_it(queue: InputQueue) -> Non
     assert not imgui.get_io().want_text_input and [name for _ in range(4) for name in frame(queue)] == ["S"]
 
 
+@pytest.mark.parametrize("has_keys", [True, False], ids=["keys", "composed"])
 @pytest.mark.parametrize("delay", [0, 1])
 @pytest.mark.parametrize("sort", ["popup", "window", "modal"])
-def test_a_field_that_a_key_opens_gets_all_that_is_typed_behind_it(queue: InputQueue, sort: str, delay: int) -> None:
-    """Whatever opens the field: it appears in the frame of the key or in the next one, and asks for the focus."""
+def test_a_field_that_a_key_opens_gets_all_that_is_typed_behind_it(
+    queue: InputQueue, sort: str, delay: int, has_keys: bool
+) -> None:
+    """Whatever opens the field: it appears in the frame of the key or in the next one, and asks for the focus. Input
+    methods send text without keys.
+    """
     text, opened_at, leaks = "", 0, []
 
     def draw(count: int) -> None:
@@ -191,9 +205,11 @@ def test_a_field_that_a_key_opens_gets_all_that_is_typed_behind_it(queue: InputQ
     press(queue, glfw.KEY_TAB)
     release(queue, glfw.KEY_TAB)
     for character in "xaasx":
-        press(queue, ord(character.upper()))
+        if has_keys:
+            press(queue, ord(character.upper()))
         queue.add_text(ord(character))
-        release(queue, ord(character.upper()))
+        if has_keys:
+            release(queue, ord(character.upper()))
     for count in range(1, 30):
         draw(count)
     assert text == "xaasx" and not leaks
