@@ -52,6 +52,9 @@ def test_headers_and_pictures_come_later(layers, picture):
 def test_data_is_shown_from_its_lowest_to_its_highest(picture):
     small = small_picture(str(picture), "depth", read_info(picture, sandbox=UNRESTRICTED), sandbox=UNRESTRICTED)
     assert small[0, 1].max() < 5 and small[-1, -1].min() > 245
+    seen = np.linspace(5.0, 25.0, 40 * 200).reshape(40, 200)[::3, ::3]
+    low, high = seen.ravel()[1], seen[-1, -1]
+    np.testing.assert_allclose(small[1:, :, 0], 255.0 * (seen[1:] - low) / (high - low), atol=0.51)
     assert (small[0, 0] == 255).all()
 
 
