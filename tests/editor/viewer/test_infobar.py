@@ -1,5 +1,7 @@
 """The numbers of the pixel under the pointer, against the standards that define them."""
 
+import colorsys
+import re
 from types import SimpleNamespace
 
 import pytest
@@ -24,6 +26,22 @@ def test_luminance_is_that_of_the_working_space(working, weights) -> None:
     words = infobar.of_pixel(SimpleNamespace(palette=DARK), (0, 0), pixel, Kind.IMAGE, look)
     luminance = float(words[-1].text.removeprefix("L "))
     assert luminance == pytest.approx(sum(a * b for a, b in zip(weights, pixel, strict=False)), rel=1e-3)
+
+
+@pytest.mark.parametrize("light", [(0.5, 0.02, 0.25), (0.003, 0.9, 0.1), (0.2, 0.2, 1.0), (0.7, 0.7, 0.7)])
+def test_a_pixel_is_told_as_light_and_as_it_is_seen(light: tuple[float, float, float]) -> None:
+    """By IEC 61966-2-1 and by Python's own conversion to hue, saturation and value; without a view."""
+    look = Look(view="none", manager=get_color_manager(ColorSettings("", ""), UNRESTRICTED))
+    words = infobar.of_pixel(SimpleNamespace(palette=DARK), (12, 7), (*light, 1.0), Kind.IMAGE, look)
+    seen = [12.92 * part if part <= 0.0031308 else 1.055 * part ** (1 / 2.4) - 0.055 for part in light]
+    place, *numbers, square, eight, hue_words, _ = words
+    assert place.text == "12, 7" and [float(word.text) for word in numbers] == pytest.approx([*light, 1.0], rel=1e-3)
+    assert (square.text, square.color) == ("", pytest.approx(seen, abs=2e-4))
+    assert [int(part) for part in eight.text.split()] == [round(part * 255) for part in seen]
+    hue, saturation, value = colorsys.rgb_to_hsv(*seen)
+    found = [float(part) for part in re.findall(r"[\d.]+", hue_words.text)]
+    assert found == [pytest.approx(360.0 * hue, abs=0.51), pytest.approx(saturation, abs=0.006),
+                     pytest.approx(value, abs=0.006)]  # fmt: skip
 
 
 def test_shaders_and_the_editor_have_the_same_weights() -> None:
