@@ -13,6 +13,9 @@ import glfw  # isort: skip
 
 NAMES = ("Ctrl+S", "S", "Ctrl+Shift+S", "Ctrl+A", "A", "Ctrl+Z", "Z", "Alt+X", "X")
 
+KEYS = frozenset({*"aqzw", "_2", "_6", "_7", "_8", "minus", "comma", "semicolon", "backslash", "f5", "keypad7",
+                  "left_arrow"})  # fmt: skip
+
 
 @pytest.fixture
 def queue() -> Iterator[InputQueue]:
@@ -116,6 +119,28 @@ def test_a_click_has_the_modifiers_of_its_moment(queue: InputQueue) -> None:
         if imgui.is_mouse_clicked(0):
             clicks.append(imgui.get_io().key_shift)
     assert clicks == [True, False]
+
+
+@pytest.mark.parametrize(
+    ("label", "key", "seen"),
+    [
+        ("a", glfw.KEY_Q, "a"), ("A", glfw.KEY_Q, "a"), (b"z", glfw.KEY_W, "z"), ("7", glfw.KEY_8, "_7"),
+        ("-", glfw.KEY_6, "minus"), (";", glfw.KEY_COMMA, "semicolon"), ("\\", glfw.KEY_8, "backslash"),
+        ("é", glfw.KEY_2, "_2"), ("", glfw.KEY_Q, "q"), (None, glfw.KEY_F5, "f5"), ("ab", glfw.KEY_Q, "q"),
+        ("!", glfw.KEY_8, "_8"), ("7", glfw.KEY_KP_7, "keypad7"), (None, glfw.KEY_LEFT, "left_arrow"),
+    ],
+)  # fmt: skip
+def test_keys_are_what_the_layout_prints_on_them(
+    queue: InputQueue, monkeypatch: pytest.MonkeyPatch, label: str | bytes | None, key: int, seen: str
+) -> None:
+    """On a French keyboard the key right of Tab is A. What prints nothing that is known counts by its place."""
+    monkeypatch.setattr(glfw, "get_key_name", lambda key, scancode: label)
+    press(queue, key)
+    queue.forward()
+    imgui.new_frame()
+    pressed = [name for name in imgui.Key.__members__ if name in KEYS and imgui.is_key_pressed(imgui.Key[name], False)]
+    imgui.end_frame()
+    assert pressed == [seen]
 
 
 def test_a_modifier_released_over_another_window_is_not_held_for_ever(queue: InputQueue) -> None:
