@@ -196,6 +196,7 @@ def open_still_editor(
     """An editor with a graph or a graph file. What it remembers is in a folder of its own there."""
     with open_still(size, at, scale, PALETTES[theme], screen) as pane, pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_DATA_HOME", str(folder / "data"))  # no preset of the user is written
+        patch.delenv("HALATION_PATH", raising=False)  # and none of the site is listed
         patch.setattr(BackgroundCache, "get", _make_at_once)
         patch.setattr(listing._FolderReader, "start", listing._FolderReader.run)
         patch.setattr(Textures, "get", lambda textures, key, make: (make(), imgui.ImTextureRef(1))[1])

@@ -49,8 +49,8 @@ TENTHS = 10.0
 SLACK = 6
 """Tenths of a pixel that a shape may lie elsewhere: places are rounded to whole pixels, up or down."""
 
-HOME = "Home##"
-"""What lists of the machine's folders begin with: a screen that has one is left out."""
+BROWSES = "###hidden files"
+"""The button of screens that browse files: they list the folders of the machine, and are left out."""
 
 RENEW = bool(os.environ.get("HALATION_RENEW"))
 
@@ -112,7 +112,7 @@ def write_guide(screens: Mapping[str, Places]) -> None:
 def name_drawings(drawings: Mapping[str, Drawing], screens: Callable[[StillEditor], Screens]) -> dict[str, list[Shape]]:
     """The shapes of each screen that is in the guide, by its name there."""
     named = {f"{screens.__name__.removeprefix('show_')} {name}": drawing.all for name, drawing in drawings.items()}
-    return {name: shapes for name, shapes in named.items() if not any(HOME in shape.text for shape in shapes)}
+    return {name: shapes for name, shapes in named.items() if not any(BROWSES in shape.text for shape in shapes)}
 
 
 @pytest.mark.skipif(RENEW, reason="makes the guide")
