@@ -49,7 +49,7 @@ TENTHS = 10.0
 SLACK = 6
 """Tenths of a pixel that a shape may lie elsewhere: places are rounded to whole pixels, up or down."""
 
-BROWSES = "###hidden files"
+BROWSES = "###choose file"
 """The button of screens that browse files: they list the folders of the machine, and are left out."""
 
 RENEW = bool(os.environ.get("HALATION_RENEW"))
