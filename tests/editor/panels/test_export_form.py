@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
-from halation.authoring.commands import SetFrameRange
+from halation.authoring.commands import ReplaceGraph, SetFrameRange
 from halation.authoring.preferences import PreferenceStore
 from halation.authoring.render_queue.queue import RenderQueue
 from halation.authoring.session import Session
@@ -14,6 +14,8 @@ from halation.editor.renders.form import RenderForm
 from halation.editor.renders.wording import aim_text, exist_text, time_text
 from halation.editor.timeline.state import TimelineState
 from halation.errors import UsageError
+from halation.graph import Output, Port
+from halation.nodes import Kind
 from halation.presets import paths
 from halation.resources.sandbox import UNRESTRICTED
 
@@ -122,3 +124,19 @@ def test_options_hold_frames_processes_and_resume(desk: Desk) -> None:
 )
 def test_lengths_of_time(seconds: float, said: str) -> None:
     assert time_text(seconds) == said
+
+
+def test_files_are_told_apart_by_their_output_where_there_are_several(desk: Desk, tmp_path: Path) -> None:
+    form, out = RenderForm(desk), tmp_path / "out"
+    wanted = {"all frames": "soft_bloom{}.####.exr", "this frame": "soft_bloom{}.exr", "many files": "{{stem}}{}.exr"}
+    for extent, name in wanted.items():
+        form.extend(extent)
+        assert form.suggest_file("image") == out / name.format("")
+    graph = desk.session.root
+    source = graph.links[Port("outputs", "image")]
+    graph = graph.add_output("second", Output(Kind.IMAGE, 4)).connect(source, Port("outputs", "second"))
+    desk.session.apply(ReplaceGraph("Add", graph))
+    for extent, name in wanted.items():
+        form.extend(extent)
+        for output in ("image", "second"):
+            assert form.suggest_file(output) == out / name.format(f"_{output}")
