@@ -14,6 +14,7 @@ from halation.nodes.color.exposure import Exposure
 from halation.nodes.color.grade import Grade
 from halation.nodes.color.hue_curves import HueCurves
 from halation.nodes.distort.kaleidoscope import Kaleidoscope
+from halation.nodes.geometry.fog import Fog
 
 
 @pytest.fixture
@@ -51,6 +52,18 @@ def test_ranges_are_those_of_sliders_or_of_the_user(graph):
     blur = find_search_space(graph, [ValuePattern("softness")], 5).numbers[0]
     declared = GaussianBlur.values["sigma"]
     assert (blur.low, blur.high) == (declared.low, declared.high)
+
+
+@pytest.mark.parametrize("color", [(0.2, 0.4, 0.8), (3.0, 0.5, 0.0)])
+def test_a_color_may_be_twice_as_bright_or_white(color):
+    """Its numbers have no sliders: from black to twice what they are, at least to 1."""
+    graph = Graph().add("fog", Fog()).set(Port("fog", "color"), (*color, 1.0))
+    value = Fog.values["color"]
+    assert value.type == "color" and not np.isfinite(value.high)
+    numbers = find_search_space(graph, [ValuePattern("fog.color")], 5).numbers
+    assert [(item.start, item.low, item.high) for item in numbers] == [
+        (part, 0.0, max(1.0, 2.0 * part)) for part in color
+    ]
 
 
 def test_a_point_is_a_graph_with_these_values(graph):

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
+from halation.resources import machine
 
 GIB = 2**30
 
@@ -36,3 +39,18 @@ for step in range(10):
     rows = [tuple(map(int, line.split())) for line in ended.stdout.splitlines()]
     assert [bool(scarce) for scarce, _ in rows] == [peak > 0.75 * 1572864 for _, peak in rows]
     assert not rows[0][0] and rows[-1][0]
+
+
+@pytest.mark.parametrize(
+    ("quota", "cores"),
+    [("max 100000", 8), ("150000 100000", 2), ("50000 100000", 1), ("400000 50000", 8), ("1600000 100000", 8),
+     ("300000 0", 8), ("", 8)],
+)  # fmt: skip
+def test_a_container_has_the_processors_whose_time_it_may_take(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, quota: str, cores: int
+) -> None:
+    """`cpu.max` is a time and the period that it is of: begun processors count (Linux, "Control Group v2")."""
+    (tmp_path / "cpu.max").write_text(f"{quota}\n")
+    monkeypatch.setattr(machine, "_CONTROL_GROUP", tmp_path)
+    monkeypatch.setattr(os, "sched_getaffinity", lambda process: range(8), raising=False)
+    assert machine.available_cores() == cores
