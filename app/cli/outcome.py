@@ -75,7 +75,7 @@ def report_failure(fault: BaseException, as_json: bool) -> int:
     if code == BUG and os.environ.get("HALATION_DEBUG"):
         raise fault
     with contextlib.suppress(OSError):
-        print(f"halation: {sentence}", file=sys.stderr, flush=True)
+        print_note(f"halation: {sentence}")
     if as_json:
         print_json({"error": describe_fault(fault)})
     return code
@@ -163,5 +163,8 @@ def write_count(count: int, noun: str, plural: str = "") -> str:
 
 
 def print_note(sentence: str) -> None:
-    """Print a sentence for the user to standard error, away from the results of the command."""
-    print(sentence, file=sys.stderr, flush=True)
+    """Print a sentence for the user to standard error, away from the results of the command.
+
+    Its line is written at once: between two writes an interrupt could come, whose own sentence would stand behind it.
+    """
+    print(f"{sentence}\n", end="", file=sys.stderr, flush=True)

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import errno
+import io
 import json
+import sys
+from contextlib import suppress
 from typing import Any
 
 import click
 import numpy as np
 import pytest
 from halation.cli import outcome
-from halation.cli.outcome import catch_faults, describe_fault, flush_output, report_failure, write_count
+from halation.cli.outcome import catch_faults, describe_fault, flush_output, print_note, report_failure, write_count
 from halation.errors import DeviceError, DocumentError, HalationError, InputError, OutputError, UsageError
 from halation.nodes import NodeImportError
 
@@ -158,3 +161,28 @@ def test_output_that_is_lost_is_not_written_again(
 def test_counts_have_their_noun() -> None:
     assert [write_count(count, "pass", "passes") for count in (0, 1, 2)] == ["0 passes", "1 pass", "2 passes"]
     assert [write_count(count, "file") for count in (1, 2)] == ["1 file", "2 files"]
+
+
+@pytest.mark.parametrize("place", range(3))
+def test_an_interrupt_between_two_writes_leaves_whole_lines(monkeypatch: pytest.MonkeyPatch, place: int) -> None:
+    """A process that is ended says so on a line of its own, which whoever started it knows by its beginning."""
+
+    class Stream(io.StringIO):
+        """Standard error whose process is interrupted behind a write."""
+
+        left = place
+
+        def write(self, text: str) -> int:
+            count, self.left = super().write(text), self.left - 1
+            if self.left == -1:
+                raise KeyboardInterrupt
+            return count
+
+    stream = Stream()
+    monkeypatch.setattr(sys, "stderr", stream)
+    with suppress(KeyboardInterrupt):
+        for sentence in ("first", "second", "third"):
+            print_note(sentence)
+    report_failure(KeyboardInterrupt(), as_json=False)
+    *lines, last = stream.getvalue().splitlines()
+    assert lines == ["first", "second", "third"][: len(lines)] and last.startswith("halation: ")
