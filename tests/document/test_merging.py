@@ -253,6 +253,11 @@ LOOPING = {"nodes/c": {"type": "merge"}, "links/c.a": "inputs.beauty", "links/c.
         ),
         ({"links/light.image": "inputs.beauty"}, {"nodes/a": NEW, "links/light.image": "a.out"}, {"links.light.image"}),
         ({"nodes/a": NEW}, {"nodes/a": {"type": "exposure"}}, {"nodes.a"}),
+        (
+            {"nodes/a": NEW, "links/a.image": "blur.out", "links/light.image": "a.out"},
+            {"nodes/a": {"type": "box_blur"}, "links/a.image": "blur.out"},
+            {"nodes.a", "links.light.image"},  # what was linked to one of two that have nothing but a name in common
+        ),
         ({"nodes/blur": {"type": "box_blur"}}, {"nodes/blur/values": {"sigma": 4.5}}, {"nodes.blur"}),
         (
             {"animation/light.stops/keys": [key(9, 1.0)]},
