@@ -204,6 +204,17 @@ def test_frames_of_what_moves_are_planned_in_turn(again):
         again(planner, graph, frame)
 
 
+def test_whether_all_needs_tiles_is_not_learned_from_a_part():
+    """A part that fits on the device says nothing of the picture, and the picture nothing of other values."""
+    graph, planner = chain(GaussianBlur(sigma=3.0), Exposure(stops=1.0)), Planner()
+    large, part = Headers((40000, 23)), Region(8, 4, 16, 8)
+    for step, (region, is_tiled) in enumerate(((part, False), (None, True), (part, False), (None, True), (None, True))):
+        other = graph.put(Port("b", "stops"), 0.5 * step)
+        made = planner.plan(other, asked(other, region=region), large)
+        assert (made.tiling is not None) is is_tiled, step
+        assert repr(made) == repr(compile_graph(other, asked(other, region=region), large)), step
+
+
 def test_equal_nodes_part_and_meet():
     graph = Graph(inputs={"image": Input()}).add("a", Exposure(stops=1.0)).add("b", Exposure(stops=2.0))
     graph = graph.add("mix", MixImages()).add_output("out", Output(Kind.IMAGE))
