@@ -89,6 +89,21 @@ def test_pieces_of_a_history_take_four_seconds() -> None:
         finish(queue, piece, seconds=1.0)
 
 
+@pytest.mark.parametrize(
+    ("slots", "counts"), [(1, [12, 6, 3, 1, 1, 1]), (2, [6, 4, 3, 2, 2, 1]), (3, [4, 3, 2, 2, 2, 1])]
+)
+def test_a_worker_gets_half_of_its_share_of_what_is_left_so_that_all_end_together(
+    slots: int, counts: list[int]
+) -> None:
+    queue = open_queue(range(1, 25))
+    queue.note_cost([0.001])
+    while (assignment := take(queue, slots)).stage.kind == "history":  # pyright: ignore[reportOptionalMemberAccess]
+        finish(queue, assignment, 1e-4)
+    taken = [assignment, *(take(queue, slots) for _ in counts[1:])]
+    assert [len(one.frames) for one in taken] == counts
+    assert [frame for one in taken for frame in one.frames] == [*range(1, sum(counts) + 1)]
+
+
 @pytest.mark.parametrize(("gigabytes", "window"), [(1, 8), (2, 4), (8, 4)])
 def test_results_take_eight_gigabytes_and_four_frames_at_least(gigabytes: int, window: int) -> None:
     queue = open_queue(range(1, 101))
