@@ -184,3 +184,17 @@ def test_grips_of_a_frame_that_was_not_moved_are_on_its_border():
     places |= {"s": (160.0, 180.0), "sw": (0.0, 180.0), "w": (0.0, 90.0), "x": (240.0, 0.0), "y": (0.0, 135.0)}
     places |= {"turn": (160.0, -30.0)}
     assert {grip.part: grip.at for grip in gizmo.grips if grip.part != "move"} == places
+
+
+@pytest.mark.parametrize(
+    ("value", "low", "pulled", "wanted"),
+    [
+        (2.0, 0.0, 0.25, 0.25), (2.0, 0.0, -3.0, 0.0), (2.0, -5.0, -3.0, 0.0), (2.0, 0.5, 0.1, 0.5),
+        (2.0, 0.0, 12.0, 10.0), (0.5, -5.0, -3.0, 0.0), (0.0, -5.0, -3.0, 0.0),
+        (-2.0, -5.0, 0.25, -0.25), (-2.0, -5.0, 3.0, -3.0), (-2.0, -5.0, 7.0, -5.0),
+    ],
+)  # fmt: skip
+def test_a_dragged_length_keeps_its_sign_and_its_limits(value: float, low: float, pulled: float, wanted: float) -> None:
+    """`pulled` is how far from the center the mouse is, in units, beyond the least distance of the grip."""
+    gizmo = SizeGizmo(PORT, value, 20.0, (160.0, 90.0), 0.0, 28.0, low, 10.0)
+    assert gizmo.drag("size", (160.0 + 28.0 + 20.0 * pulled, 90.0), FREE).values == {PORT: wanted}
