@@ -114,7 +114,7 @@ def make_grouped_sheet(
             left, top, across = layout.rule(name)
             canvas[top : top + _RULE, left : left + across] = colors.get(name, _DIM)
     paper = oiio.ImageBuf(canvas)
-    del canvas  # the sheet of all nodes has 150 MB, and it is there twice now
+    del canvas  # a copy was made, and the sheet of all nodes has 150 MB
     for name, group in groups.items():
         for (left, top), title in zip(layout.cells(name), group, strict=True):
             _label(paper, title, left, top + layout.cell[1] + round(1.3 * letters), layout.cell[0], letters)
@@ -150,6 +150,7 @@ def make_grid_sheet(
     if title:
         canvas[_MARGIN + 2 * letters : _MARGIN + 2 * letters + _RULE, _MARGIN : size[0] - _MARGIN] = _DIM
     paper, draw = oiio.ImageBuf(canvas), oiio.ImageBufAlgo.render_text
+    del canvas  # as in the other sheets
     if title:
         draw(paper, _MARGIN, _MARGIN + round(1.3 * letters), _spell_out(title), letters + 3, _BOLD, _TEXT)
     for text, x in zip(across, x_at, strict=True):
