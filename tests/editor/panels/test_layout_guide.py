@@ -1,6 +1,6 @@
-"""Panels and dialogs draw their shapes where they drew them when the layout guide was made.
+"""Panels and dialogs draw their shapes, colors and words where they drew them when the layout guide was made.
 
-The guide is made from the editor, so it proves nothing: it notices that something has moved, which nobody may have
+The guide is made from the editor, so it proves nothing: it notices that something has changed, which nobody may have
 wanted. Look at the screen, and make it anew if the change is right:
 
 HALATION_RENEW=1 python -m pytest -n 0 tests/editor/panels/test_layout_guide.py
@@ -9,7 +9,10 @@ HALATION_RENEW=1 python -m pytest -n 0 tests/editor/panels/test_layout_guide.py
 from __future__ import annotations
 
 import os
+import platform
+import re
 import sys
+import zlib
 from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
@@ -41,13 +44,16 @@ from still_screens import (
 from still_window import Drawing
 
 GUIDE = Path(__file__).parents[2] / "data/layout_guide.npz"
-"""The screens, and of each the kinds of its shapes, and their numbers: points and lengths in tenths of a pixel."""
+"""The screens, and of each the kinds of its shapes, their colors, what they say, and points and lengths in tenths."""
 
 TENTHS = 10.0
 """Numbers for a pixel."""
 
 SLACK = 6
 """Tenths of a pixel that a shape may lie elsewhere: places are rounded to whole pixels, up or down."""
+
+SHADES = 3
+"""Steps of 255 that a color may differ: some fade in while a screen is drawn."""
 
 BROWSES = "###choose file"
 """The button of screens that browse files: they list the folders of the machine, and are left out."""
@@ -59,51 +65,65 @@ SCREENS: tuple[Callable[[StillEditor], Screens], ...] = (
     show_passes, show_lessons, show_search, show_opened_fields, show_opened_panels, show_dialogs, show_more_dialogs,
 )  # fmt: skip
 
-Places = tuple[list[str], list[list[int]]]
-"""The kind and the numbers of each shape."""
+Place = tuple[str, int, int, list[int]]
+"""The kind of a shape, its color, a sum of what it says, and its numbers."""
 
 
-def measure(shapes: list[Shape]) -> Places:
-    """Where the shapes of a screen are."""
-    numbers = [[*(part for point in shape.points for part in point), *shape.lengths] for shape in shapes]
-    rounded = [np.round(np.clip(row, -3e3, 3e3) * TENTHS).astype(int).tolist() for row in map(np.array, numbers)]
-    return [shape.kind for shape in shapes], rounded
+def measure(shape: Shape) -> Place:
+    """Where a shape is, and what it is like."""
+    numbers = np.array([*(part for point in shape.points for part in point), *shape.lengths])
+    rounded = np.round(np.clip(numbers, -3e3, 3e3) * TENTHS).astype(int).tolist()
+    return shape.kind, shape.color, sum_words(shape.text), rounded
 
 
-def compare(old: Places, new: Places, shapes: list[Shape]) -> str:
-    """The first shape that is not where it was; "" if all are."""
-    for place, (kind, row) in enumerate(zip(*old, strict=True)):
-        if place == len(shapes):
-            return f"a {kind} at {row} tenths is not drawn"
-        other_kind, other_row = new[0][place], new[1][place]
-        is_same = kind == other_kind and len(row) == len(other_row)
-        if not is_same or any(abs(a - b) > SLACK for a, b in zip(row, other_row, strict=True)):
-            return f"shape {place} was a {kind} at {row} tenths, and is {shapes[place]}"
-    return f"{shapes[len(old[0])]} is new" if len(shapes) > len(old[0]) else ""
+def sum_words(text: str) -> int:
+    """A sum of the letters of a text without its id: numbers may be dates, times and sizes of the machine."""
+    words = text.partition("##")[0].replace(platform.platform(), "")
+    return zlib.crc32(re.sub(r"[\d.,]+", "", words).encode())
+
+
+def is_same(one: Place, other: Place) -> bool:
+    """Whether two places are those of one shape."""
+    colors = zip(one[1].to_bytes(4, "little"), other[1].to_bytes(4, "little"), strict=True)
+    return (
+        (one[0], one[2], len(one[3])) == (other[0], other[2], len(other[3]))
+        and all(abs(a - b) <= SHADES for a, b in colors)
+        and all(abs(a - b) <= SLACK for a, b in zip(one[3], other[3], strict=True))
+    )
+
+
+def compare(old: list[Place], shapes: list[Shape]) -> str:
+    """The first shape that is not what it was; "" if all are."""
+    for number, (place, shape) in enumerate(zip(old, shapes, strict=False)):
+        if not is_same(place, measure(shape)):
+            return f"shape {number} was a {place[0]} of color {place[1]:08x} at {place[3]} tenths, and is {shape}"
+    return "" if len(old) == len(shapes) else f"{len(old)} shapes have become {len(shapes)}"
 
 
 @cache
-def read_guide() -> dict[str, Places]:
+def read_guide() -> dict[str, list[Place]]:
     """The places of the shapes of every screen."""
     with np.load(GUIDE) as stored:
         kinds = stored["kind_names"][stored["kinds"]].tolist()
         rows = [row.tolist() for row in np.split(stored["numbers"], np.cumsum(stored["lengths"])[:-1])]
+        places = [*zip(kinds, stored["colors"].tolist(), stored["words"].tolist(), rows, strict=True)]
         ends = np.cumsum(stored["counts"]).tolist()
         spans = zip(stored["screens"].tolist(), [0, *ends], ends, strict=False)
-        return {name: (kinds[start:end], rows[start:end]) for name, start, end in spans}
+        return {name: places[start:end] for name, start, end in spans}
 
 
-def write_guide(screens: Mapping[str, Places]) -> None:
+def write_guide(screens: Mapping[str, list[Place]]) -> None:
     """Keep the places of the shapes of every screen."""
-    kinds = [kind for names, _ in screens.values() for kind in names]
-    rows = [row for _, numbers in screens.values() for row in numbers]
+    kinds, colors, words, rows = zip(*(place for places in screens.values() for place in places), strict=True)
     kind_names = sorted({*kinds})
     np.savez_compressed(
         GUIDE,
         screens=np.array([*screens]),
-        counts=np.array([len(names) for names, _ in screens.values()], np.int32),
+        counts=np.array([len(places) for places in screens.values()], np.int32),
         kind_names=np.array(kind_names),
         kinds=np.array([kind_names.index(kind) for kind in kinds], np.uint8),
+        colors=np.array(colors, np.uint32),
+        words=np.array(words, np.uint32),
         lengths=np.array([*map(len, rows)], np.uint8),
         numbers=np.array([number for row in rows for number in row], np.int16),
     )
@@ -120,7 +140,7 @@ def name_drawings(drawings: Mapping[str, Drawing], screens: Callable[[StillEdito
 @pytest.mark.parametrize("screens", SCREENS)
 def test_everything_is_where_it_was(draw, screens) -> None:
     drawings = name_drawings(draw(screens), screens)
-    faults = {name: compare(read_guide()[name], measure(shapes), shapes) for name, shapes in drawings.items()}
+    faults = {name: compare(read_guide()[name], shapes) for name, shapes in drawings.items()}
     assert not {name: fault for name, fault in faults.items() if fault}
 
 
@@ -128,5 +148,5 @@ def test_everything_is_where_it_was(draw, screens) -> None:
 def test_the_guide_has_all_screens(draw) -> None:
     drawings = {name: shapes for screens in SCREENS for name, shapes in name_drawings(draw(screens), screens).items()}
     if RENEW:
-        write_guide({name: measure(shapes) for name, shapes in drawings.items()})
+        write_guide({name: [*map(measure, shapes)] for name, shapes in drawings.items()})
     assert {*drawings} == {*read_guide()}
