@@ -9,7 +9,7 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...language.translation import translate
-from ..theme.style import ui_scale
+from ..theme.style import UNSCROLLED, ui_scale
 from ..toolkit.words import draw_empty_panel
 from .form import RenderForm
 from .form_view import draw_form, draw_start
@@ -20,9 +20,6 @@ if TYPE_CHECKING:
 
 _FLAT = imgui.ChildFlags_.nav_flattened.value
 """The keyboard walks through both parts as one."""
-_STILL = int(imgui.WindowFlags_.no_scrollbar) | int(imgui.WindowFlags_.no_scroll_with_mouse)
-"""The parts are too high in the frame in which what is below the form grows. A scrollbar would take some of the width
-for that frame, and move the buttons of the queue away from who clicks on them."""
 _ROWS = 3
 """The rows of the form that are seen at least, however low the panel is."""
 _FORM, _WIDE = 420.0, 760.0
@@ -60,7 +57,9 @@ class RendersPanel:
             return
         least, gap = _ROWS * imgui.get_frame_height_with_spacing(), imgui.get_style().item_spacing.y
         height = room.y - self._foot - gap
-        imgui.begin_child("parts", ImVec2(0.0, 0.0), _FLAT, _STILL if height >= least else 0)
+        # The parts are too high in the frame in which what is below the form grows. A scrollbar would take some of the
+        # width for that frame, and move the buttons of the queue away from who clicks on them.
+        imgui.begin_child("parts", ImVec2(0.0, 0.0), _FLAT, UNSCROLLED if height >= least else 0)
         imgui.begin_group()
         imgui.begin_child("form", ImVec2(_FORM * scale, max(height, least)), _FLAT)
         draw_form(self._context, form)

@@ -11,6 +11,9 @@ from .palette import CONTRAST, RGB, Palette
 EM = 16.0
 """Font size in pixels at UI scale 1; canvas units are pixels at that scale."""
 
+UNSCROLLED = int(imgui.WindowFlags_.no_scrollbar) | int(imgui.WindowFlags_.no_scroll_with_mouse)
+"""Flags of a window or a part of one that shows what has room: it has no scrollbar, and the wheel moves nothing."""
+
 
 @lru_cache(maxsize=4096)
 def u32(color: RGB, alpha: float = 1.0) -> int:

@@ -50,7 +50,6 @@ _APPEARING = 3
 
 _NODE = int(imgui.internal.DockNodeFlagsPrivate_.no_close_button.value)
 """Tabs can be closed, not whole docks."""
-_BARE = int(imgui.WindowFlags_.no_scrollbar) | int(imgui.WindowFlags_.no_scroll_with_mouse)
 
 
 class Window:
@@ -267,9 +266,9 @@ class Window:
             self._fronted.discard(docked.title)
             imgui.set_next_window_focus()
         if docked.title == self._filling:
-            is_seen = begin_filling(docked.title, self._find_dock_area(), _BARE if docked.bare else 0)
+            is_seen = begin_filling(docked.title, self._find_dock_area(), style.UNSCROLLED if docked.bare else 0)
         else:
-            is_seen, stays = imgui.begin(label, host.is_visible, _BARE if docked.bare else 0)
+            is_seen, stays = imgui.begin(label, host.is_visible, style.UNSCROLLED if docked.bare else 0)
             host.is_visible = bool(stays)
         if docked.bare:
             imgui.pop_style_var()
