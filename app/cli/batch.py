@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
     from ..graph import Graph
     from ..renderer import Renderer
-    from ..resources.sandbox import Sandbox
 
 
 class Batch(Struct, frozen=True):
@@ -66,9 +65,8 @@ def open_batch(output: Path, total: int, budget: int = 0, *, sandbox: Sandbox) -
             f"{output}: the folder cannot be created ({fault.strerror}); choose another with -o"
         ) from None
     renderer = Renderer(open_device(sandbox=sandbox), budget=budget, sandbox=sandbox)
-    with show_progress(renderer, total) as batch:
+    with closing(renderer), show_progress(renderer, total) as batch:
         yield batch
-    renderer.close()
 
 
 @contextmanager

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from halation.cli import cluster_progress, fit_progress, gallery, progress
+from halation.cli.batch import open_batch
 from halation.cli.cluster_progress import ClusterProgress, list_written
 from halation.cli.progress import ProgressBar, progress_reporter
 from halation.cluster.campaign_report import CampaignReport
@@ -119,6 +120,34 @@ def test_better_values_are_lines_at_most_five_times_a_second(capsys: pytest.Capt
     printed = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     assert [(line["renders"], line["settings"]["a.b"]) for line in printed] == [(1, 1.0), (4, 3.0), (6, 4.0)]
     assert [line["done"] for line in printed] == [0.1, 0.4, 0.91] and printed[0]["error"] == 0.5
+
+
+@pytest.mark.parametrize("prints_lines", [False, True])
+def test_a_search_prints_lines_if_asked(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], prints_lines: bool
+) -> None:
+    def search(task: Any, is_stopped: Any, report: Any) -> str:
+        assert not is_stopped()
+        report(SimpleNamespace(best=np.array([2.0]), elapsed=1.0, count=4, seconds=10.0, renders=10, error=0.5))
+        return "found"
+
+    monkeypatch.setattr("halation.fit.fitting.fit_values", search)
+    task: Any = SimpleNamespace(space=SimpleNamespace(settings_at=lambda point: {"a.b": float(point[0])}))
+    assert fit_progress.follow_fit(task, prints_lines) == "found"
+    lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert lines == [{"renders": 4, "done": 0.4, "error": 0.5, "settings": {"a.b": 2.0}}] * prints_lines
+
+
+def test_a_batch_closes_its_renderer_whatever_happens(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    renderer = SimpleNamespace(device=SimpleNamespace(description="a device"), closed=0)
+    renderer.close = lambda: setattr(renderer, "closed", renderer.closed + 1)
+    monkeypatch.setattr("halation.renderer.Renderer", lambda *_, **__: renderer)
+    monkeypatch.setattr("halation.renderer.open_device", lambda **_: None)
+    with open_batch(tmp_path / "new", 2, sandbox=UNRESTRICTED) as batch:
+        assert (batch.renderer, renderer.closed) == (renderer, 0)
+    with pytest.raises(ZeroDivisionError), open_batch(tmp_path, 2, sandbox=UNRESTRICTED):
+        raise ZeroDivisionError
+    assert renderer.closed == 2
 
 
 @pytest.mark.parametrize(

@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import math
+import threading
+import time
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from halation.cli import sharing
 from halation.cli.sharing import FrameCosts, count_processes
+from halation.cluster.chunk import ChunkReport, FrameChunk
+from halation.graph import Graph
 from halation.regression.parallel import choose_processes
+from halation.renderer.jobs.render_job import RenderJob
 from halation.resources import machine
+from halation.resources.sandbox import UNRESTRICTED
 
 FRAMES = range(1, 13)
 GIB = 2**30
@@ -62,6 +69,43 @@ def test_the_count_is_the_best_of_all_by_the_model():
         costs = FrameCosts(processor, processor, start, 1)
         saved = 1.0 - (frames * processor + start) / 2.0 / (frames * processor)
         assert (count_processes(costs, frames, 2, GIB) == 2) == (saved > 0.05)
+
+
+def test_what_a_frame_costs_is_measured_without_the_start(monkeypatch):
+    """Three marks, of the clock and of the processor, lie around two frames; what was used before is the start."""
+    sharing_frames = sharing.FrameSharing(RenderJob(sandbox=UNRESTRICTED, frames=tuple(range(9))), Graph(), {}, None)
+    sharing_frames.watch(SimpleNamespace(device=SimpleNamespace(target=SimpleNamespace(software=True))))
+    sharing_frames._marks = [(100.0, 7.0), (101.0, 9.0), (104.0, 11.0)]
+    asked = []
+    monkeypatch.setattr(sharing, "count_processes", lambda *words: asked.append(words) or 1)
+    assert sharing_frames._choose_count() == 1
+    ((costs, left, cores, _),) = asked
+    assert (costs.seconds, costs.processor, costs.start) == (2.0, 2.0, 5.0) and costs.memory > 2**20
+    assert (left, cores) == (9, machine.available_cores())
+
+
+def test_who_is_stopped_renders_nothing_more():
+    """The others see it between two frames of what they have taken, and take no more."""
+    frames = sharing.FrameSharing(RenderJob(sandbox=UNRESTRICTED, frames=tuple(FRAMES)), Graph(), {}, None)
+    has_begun, seen = threading.Event(), []
+
+    def render(piece, note_frame, is_cancelled, limit):
+        seen.append(is_cancelled())
+        has_begun.set()
+        while not is_cancelled():
+            time.sleep(0.001)
+        return ChunkReport("", is_cancelled=True)
+
+    process = SimpleNamespace(
+        render=render, finish=lambda: seen.append("finished"), stop=lambda: seen.append("stopped")
+    )
+    frames._threads.append(
+        threading.Thread(target=frames._run, args=(process, FrameChunk(frames._job, "/show"), 2), daemon=True)
+    )
+    frames._threads[0].start()
+    assert has_begun.wait(30.0)
+    frames.stop()
+    assert seen == [False, "finished", "stopped"]
 
 
 def test_frames_are_those_of_one_process(cli, movie, tmp_path, three_processes):

@@ -99,7 +99,7 @@ def test_a_process_that_takes_more_than_its_worker_may_have_is_ended(start, limi
 
 def test_a_process_that_ignores_being_told_is_killed(start, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(render_process, "_PATIENCE", 0.2)
-    process = start("import signal; signal.signal(15, signal.SIG_IGN); print('{}', flush=True); time.sleep(60)")
+    process = start("import signal; signal.signal(15, signal.SIG_IGN); print('{}', flush=True); time.sleep(10**6)")
     assert process.ask("{}", print, lambda: False, NO_LIMITS).facts == {} and process.is_alive
     process.stop()
     process.stop()  # as often as one likes
