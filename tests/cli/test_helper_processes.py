@@ -10,6 +10,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from halation.cli.execute_batch import _split_entries
+from halation.renderer.jobs.render_entry import RenderEntry
+from halation.renderer.jobs.render_job import RenderJob
+from halation.resources.sandbox import UNRESTRICTED
 
 GRAPH = {
     "halation": 1,
@@ -43,3 +47,17 @@ def test_a_helper_that_does_not_answer_is_killed_with_the_others(tmp_path: Path,
     assert process.returncode == (130 if ends_by == "an interrupt" else 1), said
     assert "interrupted" in said if ends_by == "an interrupt" else "ended from outside (SIGKILL)" in said, said
     assert not Path(f"/proc/{second}").exists() and not list(tmp_path.glob(".halation-*"))
+
+
+@pytest.mark.parametrize(
+    ("processes", "is_watched", "expected"),
+    [(1, False, []), (0, False, []), (1, True, ["abcde"]), (0, True, ["abcde"]), (2, False, ["ace", "bd"]),
+     (9, True, ["a", "b", "c", "d", "e"])],
+)  # fmt: skip
+def test_files_are_dealt_to_helpers_that_have_none_themselves(processes, is_watched, expected) -> None:
+    """The command watches them: a helper has no limit of time. 0 is `-j auto`."""
+    entries = tuple(RenderEntry(name) for name in "abcde")
+    job = RenderJob(sandbox=UNRESTRICTED, entries=entries, processes=processes, timeout=9.0)
+    parts = _split_entries(job, is_watched)
+    assert ["".join(entry.file for entry in part.entries) for part in parts] == expected
+    assert all((part.processes, part.timeout) == (1, 0.0) for part in parts)
