@@ -18,7 +18,7 @@ from .balance import COOLEST, HOTTEST, find_temperature, set_temperature
 from .colors import RGBA, brighten, from_display, from_hexadecimal, hexadecimal, intensity, swatch, to_display
 from .fields import Edit, Fields
 from .number_field import NO_VALUE, number_field, row_of_numbers
-from .swatches import draw_swatch, draw_swatches, luma, measure_swatches
+from .swatches import draw_swatch, draw_swatches, luma
 from .text_field import text_field
 
 _LIGHT = Value("light", "color", (0.0,) * 4, 4, low=0.0, high=1.0)
@@ -70,7 +70,7 @@ def color_field(
         color_edit = row_of_numbers(
             fields, id, color, _LIGHT, width - side - gap, _NAMES if alpha else _NAMES[:3], mixed
         )
-    imgui.set_next_window_pos(_place_picker(fields, rect), imgui.Cond_.appearing)
+    imgui.set_next_window_pos((rect[0], rect[3]), imgui.Cond_.appearing)
     if imgui.begin_popup(f"picker {id}"):
         color_edit = color_picker(fields, f"{id} picker", color, eyedropper, alpha) or color_edit
         imgui.end_popup()
@@ -191,16 +191,6 @@ def _draw_label(fields: Fields, text: str, side: float) -> None:
     imgui.align_text_to_frame_padding()
     draw_dim(fields, text)
     imgui.same_line(left + side)
-
-
-def _place_picker(fields: Fields, rect: Rect) -> tuple[float, float]:
-    """The position of the picker: below the swatch, moved so that all of it is visible."""
-    view, pad = imgui.get_main_viewport(), imgui.get_style().window_padding
-    width = imgui.get_font_size() * WIDTH + 2 * pad.x
-    height = imgui.get_font_size() * (WIDTH - 1.5) + 5 * imgui.get_frame_height_with_spacing() + 2 * pad.y
-    height += measure_swatches(fields, imgui.get_font_size() * WIDTH)
-    x = max(min(rect[0], view.pos.x + view.size.x - width), view.pos.x)
-    return x, max(min(rect[3], view.pos.y + view.size.y - height), view.pos.y)
 
 
 def _draw_short(fields: Fields, rect: Rect, side: float, color: RGBA | RGB, mixed: bool, hovered: bool) -> None:

@@ -45,12 +45,6 @@ def draw_swatches(fields: Fields, id: str, color: RGBA, width: float, alpha: boo
     return swatch_edit
 
 
-def measure_swatches(fields: Fields, width: float) -> float:
-    """The height that the swatches take."""
-    count = 1 + len(fields.store.current.swatches) if fields.store else 0
-    return -(-count // COLUMNS) * imgui.get_frame_height_with_spacing()
-
-
 def draw_swatch(fields: Fields, rect: Rect, color: RGBA, hovered: bool = False) -> None:
     """Draw a color as a display shows it: opaque at the left, over a checkerboard at the right."""
     lines, palette = imgui.get_window_draw_list(), fields.palette

@@ -126,13 +126,12 @@ def test_a_kept_color_is_removed(monkeypatch: pytest.MonkeyPatch, place: str, ke
 
 
 def test_kept_colors_wrap_after_twelve(monkeypatch: pytest.MonkeyPatch) -> None:
-    for count, lines in ((0, 1), (11, 1), (12, 2), (23, 2), (24, 3)):
+    for count in (0, 11, 12, 23, 24):
         shown = Swatches(monkeypatch, (BLUE,) * count)
         shown.draw()
         assert len(shown.gaps) == count - count // 12
-        assert swatches.measure_swatches(shown.fields, 350.0) == 24.0 * lines
     shown.fields.store = None
-    assert shown.draw() is None and swatches.measure_swatches(shown.fields, 350.0) == 0.0
+    assert shown.draw() is None
 
 
 @pytest.mark.parametrize("scale", [1.0, 2.0])
