@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import socket
 import time
+from contextlib import nullcontext
+from types import SimpleNamespace
 
 import pytest
 from farms import (
@@ -22,6 +24,8 @@ from farms import (
 )
 from halation.cluster import connection
 from halation.errors import RenderError
+from halation.renderer.jobs.render_job import RenderJob
+from halation.resources.sandbox import UNRESTRICTED
 
 pytest.importorskip("distributed", reason="Dask is not installed")
 
@@ -76,6 +80,22 @@ def test_a_connection_that_breaks_while_it_is_opened_is_tried_again(monkeypatch)
         monkeypatch.setattr(connection, "CONNECT_SECONDS", 0.0)
         with pytest.raises(RenderError, match="no scheduler answers there: start one"), connection.open_client(address):
             pass
+
+
+@pytest.mark.parametrize(
+    ("address", "frames", "count"),
+    [("local:4", 2, 2), ("local:2", 9, 2), ("local:3", 0, 3), ("tcp://farm:8786", 9, None)],
+)
+def test_as_many_processes_are_warmed_as_there_are_workers_and_frames(monkeypatch, address, frames, count):
+    """A job of videos or files does not say how many frames it has."""
+    job, warmed = RenderJob(sandbox=UNRESTRICTED, frames=tuple(range(frames))), []
+    pool = SimpleNamespace(close=lambda: warmed.append("closed"), warm=lambda *words: warmed.append(words))
+    monkeypatch.setattr(connection, "open_pool", lambda: pool)
+    monkeypatch.setattr(connection, "_connect", lambda *words: nullcontext(words))
+    with connection.open_client(address, job) as words:
+        assert words == (address, int(address[-1]) if count else 0)
+        assert warmed == ([(job, count)] if count else [])
+    assert warmed[1:] == (["closed"] if count else [])
 
 
 def test_a_job_goes_on_when_its_scheduler_is_started_again(halation, shot, slow_farm):

@@ -10,7 +10,10 @@ from halation.cluster.assignments import Assignment
 from halation.cluster.chunk import ChunkStage, StageReport
 from halation.cluster.staged_assignments import StagedAssignments
 
-MEMORY: Any = ()
+
+def name_memory(frame: int) -> Any:
+    """Stands for what a frame stores."""
+    return (f"memory {frame}",)
 
 
 def open_queue(frames: Iterable[int], first: int = 1, *, checks: bool = False) -> StagedAssignments:
@@ -28,7 +31,7 @@ def finish(queue: StagedAssignments, assignment: Assignment, seconds: float = 1.
     assert assignment.stage is not None
     kind, frames = assignment.stage.kind, assignment.frames
     names = {frame: (f"{kind}{frame}",) for frame in frames}
-    memories = {} if kind == "ahead" else dict.fromkeys(frames, MEMORY)
+    memories = {} if kind == "ahead" else {frame: name_memory(frame) for frame in frames}
     report = StageReport(dict.fromkeys(frames, seconds), names, memories, **{"frame_bytes": 1000, **facts})
     assert queue.finish_stage(report, assignment) == set()
 
@@ -123,6 +126,24 @@ def test_each_frame_is_told_what_lies_before_it_and_which_files_are_old() -> Non
     last = take(queue)
     assert last.stage is not None and (last.frames, last.stage.drops) == ((3,), ("history1",))
     assert len(queue) == 1
+
+
+@pytest.mark.parametrize("slots", [1, 3])
+def test_who_computes_ahead_is_told_what_the_first_frame_stores_and_others_what_the_one_before_does(slots: int) -> None:
+    """The first frame's stays for that, long after its files are removed."""
+    queue, kinds = open_queue(range(1, 60)), list[str]()
+    while len(queue):
+        assignment = take(queue, slots)
+        kind, frames = kind_of(assignment)
+        kinds.append(kind)
+        before = 1 if kind == "ahead" else frames[0] - 1
+        assert assignment.stage is not None
+        assert assignment.stage.memories == (name_memory(before) if before else ()), (kind, frames)
+        if kind == "frames":
+            queue.finish(frames)
+        else:
+            finish(queue, assignment, frame_bytes=1000, ahead_pays=True)
+    assert kinds.count("ahead") > 5 and kinds.index("frames") < len(kinds) - kinds[::-1].index("ahead")
 
 
 def test_a_stage_ends_three_processes_before_it_is_given_up() -> None:

@@ -163,6 +163,7 @@ def test_shaders_of_the_format_have_the_same_bounds() -> None:
         "vec2[3] a; a[2] = image.xy; struct S { vec3 v[4]; float w; }; S s[2]; s[1].v[2].x = x;",
         "if (x < 0.0) x = 1.0; " + "".join(f"if (x < {n}.0) {{ x = 2.0; }} " for n in range(500)),
         f"x = {'+'.join(['x'] * 1000)};",
+        f"x = {'+'.join(['image.r'] * 1000)};",
         "for (int i = 0; i < 4; i++) for (int j = 0; j < 4; j++) if (i < j) x += 1.0; else x -= 1.0;",
     ],
 )
