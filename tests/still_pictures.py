@@ -187,15 +187,16 @@ def show_opened_panels(still: StillEditor) -> Screens:
     """Menus and lists of other panels that a click opens, one of every kind."""
     titles = "Viewer", "Graph", "Animation", "Timeline", "Scopes", "Log", "Code"
     yield from _open(still, [(title, "bloom") for title in titles])
+    yield from _open(still, [("Viewer", "luminance")], "lights")
 
 
-def _open(still: StillEditor, places: Sequence[tuple[str, str]]) -> Screens:
+def _open(still: StillEditor, places: Sequence[tuple[str, str]], shown: str = "image") -> Screens:
     session = still.editor.session
     session.apply(SetFrameRange(1, 48))
     intensity, knee = Port("bloom", "intensity"), Port("bloom", "knee")
     moves = {intensity: Keys((Key(1, 0.2), Key(12, 0.9))), knee: Expression("0.5 + 0.1 * sin(time)")}
     session.apply(AnimateValues(moves, "Animate"))
-    session.views.show(Port("outputs", "image"))
+    session.views.show(Port("outputs", shown))
     still.show("Viewer", 2)
     still.compute()
     for title, name in places:
