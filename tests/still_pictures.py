@@ -184,9 +184,10 @@ def show_opened_fields(still: StillEditor) -> Screens:
 
 
 def show_opened_panels(still: StillEditor) -> Screens:
-    """Menus and lists of other panels that a click opens, one of every kind."""
+    """Menus and lists of other panels that a click opens, one of every kind; of a viewer with room for all tools too."""
     titles = "Viewer", "Graph", "Animation", "Timeline", "Scopes", "Log", "Code"
     yield from _open(still, [(title, "bloom") for title in titles])
+    still.pane.size = 3.0 * still.pane.size[0], still.pane.size[1]
     yield from _open(still, [("Viewer", "luminance")], "lights")
 
 
