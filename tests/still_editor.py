@@ -78,8 +78,11 @@ class StillEditor:
     def click(self, title: str, place: str, button: int = 0, part: Point = (0.5, 0.5)) -> None:
         """Click at a part of a place of a panel, by the place's name."""
         self.show(title, 1)
-        x, y = self.find_point(place, part)
-        self.pane.click((x, y, x, y), self._frame(self.find(title).draw), button)
+        self.click_at(title, self.find_point(place, part), button)
+
+    def click_at(self, title: str, point: Point, button: int = 0) -> None:
+        """Click at a point while a panel is drawn."""
+        self.pane.click((*point, *point), self._frame(self.find(title).draw), button)
         self.show(title, 2)
 
     def type(self, title: str, place: str, text: str, part: Point = (0.5, 0.5)) -> None:

@@ -29,6 +29,9 @@ WIDGETS = (
 """Functions of the library that draw a widget, and leave its place as that of the last item."""
 
 
+CHOSEN, DISABLED = 0xFF, 0xFF00
+"""The colors by which a widget says that it is checked or selected, and that it is disabled."""
+
 STACKS = {
     "push_font": "pop_font", "push_style_color": "pop_style_color", "push_style_var": "pop_style_var",
     "push_id": "pop_id", "push_item_flag": "pop_item_flag", "push_text_wrap_pos": "pop_text_wrap_pos",
@@ -244,7 +247,9 @@ class StillWindow:
             answer = call(*words, **options)
             low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
             label = next((word for word in words if isinstance(word, str)), "")
-            self.widgets.append(Shape(name, ((low.x, low.y), (high.x, high.y)), (), 0, label))
+            states = [word for word in words if isinstance(word, bool)]  # whether it is on, and whether it can be used
+            color = CHOSEN * states[:1].count(True) | DISABLED * states[1:2].count(False)
+            self.widgets.append(Shape(name, ((low.x, low.y), (high.x, high.y)), (), color, label))
             self._widget_clips.append(find_clip())
             return answer
 
