@@ -184,7 +184,7 @@ def show_opened_fields(still: StillEditor) -> Screens:
 
 
 def show_opened_panels(still: StillEditor) -> Screens:
-    """Menus and lists of other panels that a click opens, one of every kind; also of a viewer with room for all tools."""
+    """Menus and lists of other panels that a click opens, one of every kind, and of a viewer with room for all."""
     titles = "Viewer", "Graph", "Animation", "Timeline", "Scopes", "Log", "Code"
     yield from _open(still, [(title, "bloom") for title in titles])
     still.pane.size = 3.0 * still.pane.size[0], still.pane.size[1]
