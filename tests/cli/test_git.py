@@ -181,6 +181,20 @@ def test_other_json_stays_text(cli, git, branches, repository):
     assert json.loads(path.read_text()) == {"name": "x", "a": 9, "b": 2, "c": 3, "d": 8}
 
 
+def test_a_conflict_of_other_json_is_that_of_git(cli, git, branches, repository):
+    """Both sides are in the file, as without Halation, and nothing but git's own words is said."""
+    path = repository / "my graphs" / "package.json"
+    git("checkout", "-qb", "theirs")
+    path.write_text(path.read_text().replace('"a": 1', '"a": 9'))
+    git("commit", "-qam", "theirs")
+    git("checkout", "-q", "main")
+    path.write_text(path.read_text().replace('"a": 1', '"a": 7'))
+    git("commit", "-qam", "ours")
+    found = git("merge", "theirs", code=1)
+    assert "CONFLICT" in found.stdout and not found.stderr
+    assert '<<<<<<< ours\n"a": 7,\n=======\n"a": 9,\n>>>>>>> theirs\n' in path.read_text()
+
+
 def test_a_side_that_cannot_be_read_loses_nothing(cli, git, branches, repository):
     path = repository / "my graphs" / "shot.json"
     branches(light(2.0), {"light": 3})

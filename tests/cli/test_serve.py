@@ -313,17 +313,19 @@ def test_what_is_there_is_not_lost_for_a_socket(tmp_path, kind):
 
 def test_lines_on_standard_input_are_answered_on_standard_output(graphs):
     path = str(graphs())
-    requests = [{"do": "check", "id": 1, "graph": path}, {"do": "render", "id": 2, "graph": path}]
+    requests = [{"do": name, "id": name, "graph": path} for name in ("check", "render", "explain")]
     result = subprocess.run(
-        [sys.executable, "-m", "halation.cli", "serve"],
+        [sys.executable, "-m", "halation.cli", "serve", "--form", "fragment", "--memory", "32K"],
         input="\n".join(map(json.dumps, requests)).encode(),
         capture_output=True,
         check=True,
         timeout=120,
     )
-    first, second = map(json.loads, result.stdout.splitlines())
-    assert first["problems"] == [] or first["id"] == 1
-    assert unpack_array("image", second["pictures"]["image"]).shape == (32, 48, 4)
+    replies = {reply["id"]: reply for reply in map(json.loads, result.stdout.splitlines())}
+    assert {problem["rule"] for problem in replies["check"]["problems"]} == {"not-canonical"}
+    assert unpack_array("image", replies["render"]["pictures"]["image"]).shape == (32, 48, 4)
+    plan = replies["explain"]["plan"]
+    assert (plan["form"], plan["why"]) == ("fragment", "asked for") and plan["tiles"]
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="fork and SIGKILL")

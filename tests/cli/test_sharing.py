@@ -54,6 +54,7 @@ def three_processes(monkeypatch):
         (FrameCosts(1.0, 1.0, 1.0, GIB), 3, 8, 64 * GIB, 3),  # no more than there are frames
         (FrameCosts(1.0, 2.0, 0.0, GIB), 100, 8, math.inf, 4),  # each keeps two of eight busy
         (FrameCosts(1.0, 1.0, 1.0, GIB), 100, 1, 64 * GIB, 1),
+        (FrameCosts(1.0, 1.0, 19.0, GIB), 20, 2, 64 * GIB, 1),  # 19.5 s instead of 20 are not worth a process
     ],
 )
 def test_as_many_processes_as_are_fastest(costs, frames, cores, memory, expected):

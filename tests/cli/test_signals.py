@@ -15,6 +15,7 @@ from uuid import uuid4
 
 import pytest
 from children import MARK, end_process, list_marked
+from halation.cli import signals
 
 HALATION = [sys.executable, "-m", "halation.cli"]
 CODE = "vec4 f(vec4 image) {\n    for (int i = 0; i < 3; ++i) image *= 0.9;\n    return image;\n}"
@@ -132,6 +133,19 @@ def test_cases_that_are_killed_leave_no_process(tmp_path: Path) -> None:
         process.kill()
         wait_for_end(mark)
     assert process.returncode == -signal.SIGKILL
+
+
+@pytest.mark.parametrize(
+    ("at_request", "expected"),
+    [(signals._interrupt, [(signal.SIGINT, signal.SIG_IGN)]), (signal.SIG_IGN, []), (signal.SIG_DFL, [])],
+)
+def test_a_copy_leaves_interrupts_to_its_parent_if_that_can_ask_it_to_end(monkeypatch, at_request, expected) -> None:
+    """A copy that does not hear requests to end would hear nothing at all without interrupts."""
+    changed = []
+    monkeypatch.setattr(signal, "getsignal", {signal.SIGTERM: at_request}.__getitem__)
+    monkeypatch.setattr(signal, "signal", lambda *words: changed.append(words))
+    signals.ignore_interrupts()
+    assert changed == expected
 
 
 def test_who_ignores_hangups_goes_on(tmp_path: Path) -> None:

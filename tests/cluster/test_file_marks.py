@@ -9,6 +9,7 @@ from types import SimpleNamespace
 from typing import Annotated, Any
 
 import pytest
+from halation.cli.cluster_job import prepare_entries
 from halation.cluster import file_marks, versions
 from halation.cluster.campaign_report import CampaignReport
 from halation.cluster.chunk import FileMark
@@ -16,6 +17,8 @@ from halation.cluster.file_marks import FileHashing, FileMarker
 from halation.cluster.versions import describe_versions, find_version_fault
 from halation.graph import Graph, Group, Input, Unknown
 from halation.nodes import Image, Pointwise, Slider, catalogue
+from halation.renderer.jobs.render_entry import RenderEntry
+from halation.renderer.jobs.render_job import RenderJob
 from halation.resources.sandbox import UNRESTRICTED, Sandbox
 from halation.version import VERSION
 
@@ -98,6 +101,19 @@ def test_files_may_be_marked_by_several_and_are_read_once(folder: Path, monkeypa
     first = FileMarker(graph, {}, UNRESTRICTED, hashing).mark_files((1,), range(0))
     monkeypatch.setattr(file_marks, "content_hash", None)
     assert FileMarker(graph, {}, UNRESTRICTED, hashing).mark_files((1,), range(0)) == first != {}
+
+
+def test_parts_that_are_files_have_the_marks_of_their_own(tmp_path: Path) -> None:
+    entries = tuple(RenderEntry(f"{name}.exr", {"photo": str(tmp_path / f"{name}.exr")}) for name in "abc")
+    for size, entry in enumerate(entries, 1):
+        Path(entry.inputs["photo"]).write_bytes(b"x" * size)
+    graph = Graph(folder=str(tmp_path)).add_input("photo", Input())
+    job = RenderJob(sandbox=UNRESTRICTED, entries=entries, frames=(1,), destinations=(("", "{stem}.exr"),))
+    chunk, mark_files = prepare_entries(job, graph, ())
+    assert chunk.numbers == (1, 2, 3)
+    for numbers in ((1,), (2,), (3, 1)):
+        found = {Path(path).name: mark.size for path, mark in mark_files(numbers).items()}
+        assert found == {entries[number - 1].file: number for number in numbers}
 
 
 class Plugged(Pointwise):

@@ -149,6 +149,14 @@ def test_overloads_and_prototypes_that_grow() -> None:
         node_type(Code("glsl", effect("", overloads)))
 
 
+@pytest.mark.parametrize("count", [2, 3, 60])
+def test_functions_that_call_each_other_in_a_circle_are_measured_once(count: int) -> None:
+    """GLSL forbids it, and the driver says so with the line: what measures them must come to an end all the same."""
+    head = "".join(f"float g{n}(float x);\n" for n in range(count))
+    bodies = "".join(f"float g{n}(float x) {{ return g{(n + 1) % count}(x); }}\n" for n in range(count))
+    assert node_type(Code("glsl", effect("image.r = g0(x);", head + bodies)))
+
+
 def test_shaders_of_the_format_have_the_same_bounds() -> None:
     with pytest.raises(CodeFault, match="an array cannot have the length 100000000"):
         node_type(Code("isf", isf("float a[100000000]; gl_FragColor = vec4(a[3]);")))
