@@ -165,7 +165,6 @@ def judge_depth_by_planes(depth: Array) -> Convention | None:
     if min(width, height) < 2 * reach + 3:
         return None
     rows, columns = sample_pixels((width, height), 4 * SAMPLES, reach)
-    rows, columns = rows.clip(reach, height - reach - 1), columns.clip(reach, width - reach - 1)
     steps = reach * np.array([(0, 0), (0, -1), (0, 1), (-1, 0), (1, 0)])
     at = np.stack([rows, columns], axis=1) + steps[:, None]
     cross = depth[at[..., 0], at[..., 1]].astype(np.float64)

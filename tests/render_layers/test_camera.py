@@ -124,6 +124,21 @@ def test_a_third_of_the_places_may_be_wrong() -> None:
     assert solved.residual < 1e-6 and np.allclose(solved.camera.eye, CAMERA.eye, atol=1e-4)
 
 
+@pytest.mark.parametrize(("nearest", "farthest", "bound"), [(2.0, 20.0, 2e-3), (0.5, 500.0, 1e-3), (0.1, 1e4, 1e-3)])
+def test_places_count_by_how_far_off_they_are_seen(nearest: float, farthest: float, bound: float) -> None:
+    """Blocks at random depths, each place off by a tenth of a pixel: the far ones, off by the most, do not rule."""
+    rows = np.reshape(CAMERA.rows, (3, 4))
+    x, y = np.meshgrid((np.arange(WIDTH) + 0.5) / WIDTH, (np.arange(HEIGHT) + 0.5) / HEIGHT)
+    for seed in range(4):
+        random = np.random.default_rng(seed)
+        blocks = random.uniform(math.log(nearest), math.log(farthest), (HEIGHT // 6, WIDTH // 6))
+        depth = np.exp(blocks.repeat(6, 0).repeat(6, 1) + random.normal(size=(HEIGHT, WIDTH)) * 0.05)
+        places = np.linalg.solve(rows[:, :3], (np.stack([x * depth, y * depth, depth], -1) - rows[:, 3])[..., None])
+        noise = random.normal(size=(HEIGHT, WIDTH, 3)) * 1e-3 * depth[..., None]
+        solved = solve_camera(places[..., 0] + noise)
+        assert np.allclose(solved.camera.eye, CAMERA.eye, rtol=0.0, atol=bound) and solved.residual < 0.14
+
+
 def test_half_floats_still_tell_the_camera() -> None:
     solved = solve_camera(SEEN.position.astype(np.float16))
     assert solved.residual < 0.1 and np.allclose(solved.camera.eye, CAMERA.eye, atol=0.02)

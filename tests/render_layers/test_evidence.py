@@ -63,6 +63,19 @@ def test_positions_tell_what_0_and_1_stand_for(kind: str, scale: float, offset: 
     assert f"0 is {offset:.4g} and 1 is {offset + scale:.4g}" in found.reason
 
 
+@pytest.mark.parametrize(
+    ("near", "far", "is_found"),
+    [(2.0, 20.0, True), (9.0, 9.5, False), (-4e4, 4e4, False), (-1e3, 1e3, True)],
+)
+def test_a_depth_from_0_to_1_must_show_some_of_it(near: float, far: float, is_found: bool) -> None:
+    """Between 9 and 9.5 lies less than a tenth of the picture; of 80,000 its depths use less than a thousandth."""
+    depth = np.clip((np.where(SEEN.hit, SEEN.depth, far) - near) / (far - near), 0.0, 1.0)
+    free = (depth > 0.0) & (depth < 1.0)
+    assert (free.mean() < 0.1, np.ptp(depth[free]) < 1e-3) == (near == 9.0, near == -4e4)
+    found = evidence.match_depth_with_positions(depth, SEEN.position, CAMERA)
+    assert (found is not None and found.kind == DepthKind.NORMALIZED) == is_found
+
+
 def test_other_numbers_are_no_depth() -> None:
     noise = np.random.default_rng(5).random((HEIGHT, WIDTH)).astype(np.float32)
     assert evidence.match_depth_with_positions(noise, SEEN.position, CAMERA) is None

@@ -12,7 +12,7 @@ import OpenImageIO as oiio
 import pytest
 from halation.render_layers.analysis import RenderAnalysis, analyze_render
 from halation.render_layers.naming import SCHEMES, RenderProgram, Role
-from halation.render_layers.recognition import RoleGrounds
+from halation.render_layers.recognition import RoleGrounds, find_light_groups
 from halation.resources.sandbox import UNRESTRICTED
 
 ROOT = Path(__file__).parents[2]
@@ -276,6 +276,19 @@ def test_of_view_layers_that_of_the_picture_counts(tmp_path: Path) -> None:
         found.find_layer(Role.BEAUTY).full_name == "Main.Combined"
         and found.find_layer(Role.DEPTH).full_name == "Main.Depth"
     )
+
+
+def test_light_groups_are_those_of_the_view_layer_of_the_picture(tmp_path: Path) -> None:
+    words = [
+        f"{view}.{name}:rgba" for view in ("Main", "Other") for name in ("Combined", "Combined_key", "Combined_rim")
+    ]
+    found = single(
+        tmp_path / "x.exr", f"{' '.join(words)} Main.Combined_x:rgba Main.Depth:z", {"Software": "Blender 4.2"}
+    )
+    groups = find_light_groups(found.passes)
+    assert {name: layer.full_name for name, layer in groups.items()} == {
+        name: f"Main.Combined_{name}" for name in ("key", "rim", "x")
+    }
 
 
 def test_equal_claims_are_left_to_the_user(tmp_path: Path) -> None:
