@@ -46,6 +46,9 @@ PAGES = "tests/law/test_generated.py"
 GUIDES = tuple(f"tests/editor/panels/test_{name}_guide.py" for name in ("layout", "style"))
 """What every panel draws, and where: few changes of the editor's drawing escape them, wherever they are."""
 
+RULES = tuple(f"tests/editor/panels/test_{name}.py" for name in ("clicked_acts", "moved_panels", "menu_items"))
+"""What holds for every panel: what clicks and entries of menus do, and how all of it grows with the interface."""
+
 DRAWING_ROOMS = ("color", "custom_nodes", "nodes", "renderer")
 """Rooms of tests that look at what shaders draw."""
 
@@ -86,8 +89,8 @@ def select_tests(path: Path, line: int) -> list[list[str]]:
     kin, far = ([name for name in runners if (file_of(name) in near) is wanted] for wanted in (True, False))
     quick = [*tests, *(f"--deselect={name}" for name in listed if file_of(name) in tests)] if tests else []
     pages = [PAGES] if path.suffix == ".py" else []
-    guides = [*GUIDES] if path.parts[:2] == EDITOR else []
-    return [words for words in (first, guides, kin, pages, late, far, quick, slow, driving) if words]
+    guides, rules = ([*GUIDES], [*RULES]) if path.parts[:2] == EDITOR else ([], [])
+    return [words for words in (first, guides, kin, pages, rules, late, far, quick, slow, driving) if words]
 
 
 def file_of(name: str) -> str:
