@@ -114,6 +114,13 @@ def test_inserting_new_and_existing_nodes(session):
     assert links(session)["soften.image"] == "n2.out" and links(session)["outputs.image"] == "soften.out"
 
 
+def test_a_node_without_a_place_is_inserted_halfway_along_the_link(session):
+    session.apply(MoveElements((ElementId("n1"),), 900.0, 200.0))
+    (x0, y0), (x1, y1) = (session.position(ElementId(id)) for id in ("n0", "n1"))
+    new = session.apply(InsertNode("soften", port("n1.image")))
+    assert session.position(ElementId(new)) == ((x0 + x1) / 2, (y0 + y1) / 2) and y0 != y1 and x0 + x1
+
+
 def test_deleting_all_kinds_of_things(session):
     frame, note = session.apply(AddFrame("f", (0.0, 0.0))), session.apply(AddComment((0.0, 0.0), "c"))
     dot = session.apply(AddDot(port("n1.image"), (1.0, 1.0)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -67,6 +68,28 @@ def test_the_keys_of_a_shortcut_run_its_action_once(keyboard: Keyboard, scope: s
     for action, text in shortcuts:
         ran = keyboard.press(text)
         assert ran[:1] == [action.id] and (action.repeats or len(ran) == 1), (text, ran)
+
+
+COUNTERPARTS = (
+    ("previous", "next"), ("left", "right"), ("up", "down"), ("first", "last"), ("in", "out"), ("undo", "redo"),
+    ("brighter", "darker"), ("larger", "smaller"), ("earlier", "later"), ("upstream", "downstream"),
+)  # fmt: skip
+"""Words of actions that do the same in two directions."""
+
+
+def test_actions_in_two_directions_have_keys_alike(keyboard: Keyboard) -> None:
+    """Both repeat while their keys are held, or neither does, and they work in the same places."""
+    actions = {action.id: action for action in keyboard.still.editor.actions.all}
+    pairs = 0
+    for one, other in COUNTERPARTS:
+        for id, action in actions.items():
+            if (twin := actions.get(re.sub(rf"(?<![a-z]){one}(?![a-z])", other, id))) not in (None, action):
+                assert twin is not None
+                pairs += 1
+                for fact in ("menu", "scope", "contexts", "repeats"):
+                    assert getattr(action, fact) == getattr(twin, fact), (id, twin.id, fact)
+                assert bool(action.shortcut) == bool(twin.shortcut), (id, twin.id)
+    assert pairs > 20
 
 
 def test_shortcuts_of_other_panels_do_not_run(keyboard: Keyboard) -> None:
