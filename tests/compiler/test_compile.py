@@ -93,7 +93,11 @@ def test_what_is_made_from_nothing_has_the_size_of_the_first_picture(plan):
     graph = chain(Displace()).add("noise", Noise()).connect(Port("noise", "vector"), Port("a", "vector"))
     made = plan(graph)
     assert {item.size for item in made.surfaces} == {(37, 23)}
-    assert {item.size for item in plan(graph, size=(64, 32)).surfaces} == {(37, 23), (64, 32)}
+    resized = plan(graph, size=(64, 32))
+    assert {item.size for item in resized.surfaces} == {(37, 23), (64, 32)}
+    assert resized.surfaces[resized.outputs["image"]].size == (64, 32)
+    alone = plan(chain(Exposure(stops=1.0)), size=(64, 32))
+    assert alone.surfaces[alone.outputs["image"]].size == (64, 32)
 
 
 def test_a_measured_number_drives_a_value_without_leaving_the_device(plan):

@@ -10,12 +10,26 @@ from random import Random
 
 import pytest
 from halation.document import FORMAT, dumps, load, loads
+from halation.document.records import _plain  # pyright: ignore[reportPrivateUsage]
 from halation.errors import DocumentError, GraphError
 from halation.graph import Graph
 from halation.resources.sandbox import UNRESTRICTED
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from toy_nodes import TOYS, random_graph, small
+
+
+@pytest.mark.parametrize(
+    ("types", "words"),
+    [
+        ("str", "a string"),
+        ("int | null", "a whole number or null"),
+        ("str | Color", "'str | Color'"),
+        ("Color", "'Color'"),
+    ],
+)
+def test_types_have_plain_words_where_all_are_known(types: str, words: str) -> None:
+    assert _plain(types) == words
 
 
 def fault(text: str) -> DocumentError:
