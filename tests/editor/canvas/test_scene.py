@@ -24,7 +24,8 @@ from halation.editor.canvas.gestures import (
     preview_gesture,
     resize_to,
 )
-from halation.editor.canvas.scene import CanvasScene
+from halation.editor.canvas.layout import HEADER
+from halation.editor.canvas.scene import CanvasScene, find_pin
 from halation.editor.canvas.staging import SceneBuilder, measure_comment
 from halation.editor.shared.entries import GROUP, arrange_entries, graph_entries, keep_fitting, node_entries
 from halation.graph import Graph, Input, Output, Port, Unknown
@@ -57,6 +58,13 @@ def test_hits_pins_fields_titles_and_links() -> None:
     wire = scene.by_target[P("bloom.image")]
     assert scene.find_hit(*wire.middle, 8.0).port == P("bloom.image")
     assert scene.find_hit(box.x, box.y - 300, 8.0).part == "empty"
+
+
+def test_a_link_to_a_pin_that_is_not_shown_meets_the_title() -> None:
+    box = staged(chain("exposure", "bloom")).boxes["exposure"]
+    assert box.x == box.rect[0] and box.w > 0.0
+    assert find_pin(box, "nothing", output=False) == (box.x, box.y + HEADER / 2)
+    assert find_pin(box, "nothing", output=True) == (box.x + box.w, box.y + HEADER / 2)
 
 
 def test_what_is_drawn_last_is_hit_first() -> None:
