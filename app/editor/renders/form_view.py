@@ -8,8 +8,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
-from imgui_bundle import imgui
 
 from ...authoring.render_queue.queue import QueuedFiles
 from ...color.display import list_views
@@ -264,9 +264,10 @@ def _draw_consequences(context: RendersContext, form: RenderForm, aim: RenderTar
     draw_dim(context, cut_middle(aim_text(aim), imgui.get_content_region_avail().x))
     record(context, "render aim")
     tip(aim.first if aim.files == 1 else f"{aim.first}\n{aim.last}")
-    if aim.exist:
-        if not form.resume:
-            imgui.align_text_to_frame_padding()
+    if not aim.exist:  # a render writes its first file: the line that counts them has its room, and nothing moves
+        imgui.dummy(ImVec2(0.0, imgui.get_frame_height()))
+    else:
+        imgui.align_text_to_frame_padding()
         draw_wrapped(palette.dim if form.resume else palette.warning, exist_text(aim, form.resume))
         record(context, "render exists")
         if not form.resume:

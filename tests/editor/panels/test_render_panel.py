@@ -29,8 +29,8 @@ def test_the_queue_is_beside_the_form_where_there_is_room(
         assert (row_top > bottom) is not is_beside
 
 
-def test_nothing_of_the_queue_moves_while_what_is_below_the_form_grows(tmp_path: Path) -> None:
-    """Files that a render has written are counted there, so it grows while somebody is about to click on the render."""
+def test_nothing_moves_when_the_first_file_is_written(tmp_path: Path) -> None:
+    """Files that are there are counted below the form, while somebody is about to click on the render."""
     document.save(make_graph(), tmp_path / "shot.json", sandbox=UNRESTRICTED)
     with open_still_editor(tmp_path, tmp_path / "shot.json", size=(1200.0, 360.0)) as still:
         still.editor.store.note_folder("export", tmp_path / "x.exr")
@@ -40,5 +40,5 @@ def test_nothing_of_the_queue_moves_while_what_is_below_the_form_grows(tmp_path:
         (tmp_path / "shot.exr").write_bytes(b"")
         for _ in range(90):  # the disk is looked at again after a second
             still.show("Renders", 1)
-            assert still.places["open folder 0"] == before
-        assert "render exists" in still.places and still.places["render"] == start
+            assert still.places["open folder 0"] == before and still.places["render"] == start
+        assert "render exists" in still.places
