@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from halation.custom_nodes import Code, node_type
 from halation.editor.code.page import Fault, Page
+from halation.editor.theme.palette import DARK
 from halation.errors import ShaderError
 from halation.graph import Unknown
 
@@ -52,3 +53,45 @@ def test_a_fault_names_its_line_or_begins_with_a_capital() -> None:
     assert Fault(0, "nan is no number").text == "Nan is no number"
     assert Fault(3, "no such name").text == "Line 3: no such name"
     assert Fault(2, "").text == "Line 2: "
+
+
+class Lines:
+    """Stands for the widget with the text: five lines, of which some are marked."""
+
+    def __init__(self) -> None:
+        self.marked, self.cleared = list[tuple[int, str]](), 0
+
+    def get_line_count(self) -> int:
+        return 5
+
+    def clear_markers(self) -> None:
+        self.marked.clear()
+        self.cleared += 1
+
+    def add_marker(self, line: int, number: int, back: int, tip: str, text: str) -> None:
+        assert tip == text and number >> 24 < back >> 24 < 255, "the text stays legible"
+        self.marked.append((line, text))
+
+
+def test_the_line_of_a_fault_is_marked_once_until_something_changes() -> None:
+    lines, faults = Lines(), list[Fault | None]()
+    page: Any = SimpleNamespace(
+        widget=lines, context=SimpleNamespace(palette=DARK), _find_fault=lambda: faults[-1], _theme="dark",
+        _committed="text", _marker_inputs=None,
+    )  # fmt: skip
+    for fault, marked in (
+        (Fault(3, "no such name"), [(2, "no such name")]),
+        (Fault(9, "it ends too soon"), [(4, "it ends too soon")]),
+        (Fault(0, "of another file"), []),
+        (Fault(1, "again"), [(0, "again")]),
+        (None, []),
+    ):
+        faults.append(fault)
+        before = lines.cleared
+        for _ in range(3):
+            Page._update_markers(page)  # pyright: ignore[reportPrivateUsage]
+        assert (page.fault, lines.marked, lines.cleared - before) == (fault, marked, 1)
+    for name in ("_theme", "_committed"):
+        setattr(page, name, "other")
+        Page._update_markers(page)  # pyright: ignore[reportPrivateUsage]
+    assert lines.cleared == 7
