@@ -43,6 +43,12 @@ in vec3 tint;
 layout(location = 0) out vec4 color;
 void main() { color = vec4(tint, 0.5); }
 """
+COMPUTE = f"""#version 430 core
+layout(local_size_x = 1) in;
+layout(rgba32f, binding = 0) writeonly uniform image2D target;
+uniform int first_row;
+void main() {{ imageStore(target, ivec2(gl_GlobalInvocationID.xy) + ivec2(0, first_row), vec4{WRITTEN}); }}
+"""
 FLAGS = {"blending": moderngl.BLEND, "depth": moderngl.DEPTH_TEST, "culling": moderngl.CULL_FACE}
 FLAGS["all"] = moderngl.BLEND | moderngl.DEPTH_TEST | moderngl.CULL_FACE
 
@@ -125,7 +131,9 @@ def test_where_no_triangle_is_a_picture_of_a_mesh_is_empty(device: OpenGLDevice)
     vertices = np.array(make_wall(0.0, 1.0), np.float32)
     vertices[:, 0] = np.array((-1.0, 0.0, -1.0)) + 1.0 / 3.0  # columns 1 to 4 at the bottom
     mesh = device.create_mesh(Mesh("wall", vertices, np.arange(3, dtype=np.uint32)))
+    device.take_written()
     device.draw_mesh(program, [target], Bindings(), mesh)
+    assert device.take_written() == {target.native_handle}
     found = read_texture(device, target)
     assert found[0, 2, 3] == 0.5 and not found[:, :1].any() and not found[:, 5:].any()
     mesh.release(), target.release(), program.release()
@@ -158,6 +166,17 @@ def test_a_part_is_drawn_and_the_next_draw_is_whole(
         np.testing.assert_array_equal(read_texture(device, target), np.full((5, 6, 4), color, np.float32))
     for each in (*targets, program):
         each.release()
+
+
+def test_a_compute_program_writes_from_its_first_row_on(device: OpenGLDevice) -> None:
+    target, program = fill(device), device.create_compute_program(COMPUTE)
+    device.take_written()
+    device.dispatch(program, [target], Bindings(), (6, 3, 1), reads_images=False, first_row=1)
+    assert device.take_written() == {target.native_handle}
+    expected = np.full((5, 6, 4), LEFT, np.float32)
+    expected[1:4] = WRITTEN
+    np.testing.assert_array_equal(read_texture(device, target), expected)
+    target.release(), program.release()
 
 
 def test_nothing_that_may_be_released_stays_bound(device: OpenGLDevice) -> None:
