@@ -180,3 +180,13 @@ def test_keys_end_where_the_line_of_their_block_ends(tmp_path: Path) -> None:
             titles += is_title
             assert is_title or any(abs(right - end[0]) < 1.0 for _, end in lines), word
         assert titles == len(lines)
+
+
+def test_of_what_sticks_out_of_the_graph_only_what_is_seen_counts() -> None:
+    """A card may lie over the rest, which is behind other panels."""
+    widgets = {
+        "Graph": (100.0, 50.0, 500.0, 400.0), "title a": (0.0, 0.0, 9.0, 9.0), "node a": (80.0, 60.0, 200.0, 90.0),
+        "node b": (450.0, 30.0, 530.0, 420.0), "node c": (150.0, 100.0, 250.0, 200.0),
+    }  # fmt: skip
+    seen = coach._list_seen(widgets, "node ")  # pyright: ignore[reportPrivateUsage]
+    assert seen == [(100.0, 60.0, 200.0, 90.0), (450.0, 50.0, 500.0, 400.0), (150.0, 100.0, 250.0, 200.0)]
