@@ -10,6 +10,7 @@ import pytest
 from halation.errors import OutputError, UsageError
 from halation.media.comparison.contact_sheet import (
     make_caption,
+    make_grid_sheet,
     make_grouped_sheet,
     make_sheet,
     show_any_light,
@@ -159,3 +160,41 @@ def test_a_written_sheet_says_what_it_shows(tmp_path: Path) -> None:
 def test_unknown_view() -> None:
     with pytest.raises(UsageError, match="there is no view 'sepia'"):
         show_light(PICTURES["red"], "sepia")
+
+
+def find_ink(made: np.ndarray, other: np.ndarray) -> tuple[int, int, int, int]:
+    """Left, top, right and bottom of what two sheets do not have in common."""
+    rows, columns = np.nonzero((made != other).any(axis=2))
+    return int(columns.min()), int(rows.min()), int(columns.max()) + 1, int(rows.max()) + 1
+
+
+def find_cell(made: np.ndarray, color: float) -> tuple[int, int, int, int]:
+    """Left, top, right and bottom of what has a gray that nothing else has."""
+    rows, columns = np.nonzero((np.abs(made - color) < 1e-5).all(axis=2))
+    return int(columns.min()), int(rows.min()), int(columns.max()) + 1, int(rows.max()) + 1
+
+
+@pytest.mark.parametrize("title", ["", "How it looks"])
+def test_a_grid_has_its_headings_beside_and_above_its_cells(title: str) -> None:
+    grays = np.linspace(0.3, 0.9, 6).reshape(2, 3)
+    rows = [[np.full((40, 80, 3), gray, np.float32) for gray in row] for row in grays]
+    down, across = ("1", "much longer"), ("one", "two", "three")
+    made = make_grid_sheet(rows, down, across, title=title)
+    cells = {(y, x): find_cell(made, grays[y, x]) for y in range(2) for x in range(3)}
+    left, top = cells[0, 0][:2]
+    assert made.shape == (top + 2 * (40 + GAP) - GAP + MARGIN, left + 3 * (80 + GAP) - GAP + MARGIN, 3)
+    for (y, x), cell in cells.items():
+        at = left + x * (80 + GAP), top + y * (40 + GAP)
+        assert cell == (*at, at[0] + 80, at[1] + 40)
+    ink = find_ink(made, make_grid_sheet(rows, ("", down[1]), across, title=title))
+    assert ink[0] > MARGIN and left - 2 * GAP < ink[2] <= left and abs((ink[1] + ink[3]) / 2 - (top + 20)) <= 4
+    beside = made[top + 40 + GAP : -MARGIN, :left]
+    assert np.ptp(beside, axis=(0, 1)).max() > 0.1 and np.ptp(beside[:, :MARGIN]) == np.ptp(beside[0, 0])
+    for x in range(3):
+        ink = find_ink(made, make_grid_sheet(rows, down, [*across[:x], "", *across[x + 1 :]], title=title))
+        assert cells[0, x][0] <= ink[0] and ink[2] <= cells[0, x][2] and top - 24 <= ink[1] and ink[3] <= top - 8
+    if title:
+        ink = find_ink(made, make_grid_sheet(rows, down, across, title="."))
+        above = made[:top, MARGIN:-MARGIN]
+        (rule,) = np.nonzero((above == above[:, :1]).all(axis=(1, 2)) & (above[:, 0, 0] > 0.3))
+        assert len(rule) == 2 and ink[0] >= MARGIN <= ink[1] and ink[3] + 4 < rule[0] and rule[-1] < top - 24
