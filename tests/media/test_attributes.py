@@ -144,6 +144,20 @@ for path in options.pop("paths"):
         assert read_layer(path, "", Kind.IMAGE, sandbox=UNRESTRICTED).array.shape == (6, 8, 4)
 
 
+@pytest.mark.parametrize("ending", ["jpg", "tif", "png", "exr"])
+@pytest.mark.parametrize("size", [100, 7_000, 20_000, 50_000])
+def test_a_graph_in_a_header_may_be_longer_than_other_texts(tmp_path, ending, size):
+    """In a JPEG a foreign text of more than 8,000 bytes is left out; the graph that made the picture has 60,000."""
+    ours = {"halation:graph": "x" * size, "halation:version": "1"}
+    foreign = {"ImageDescription": "y" * size} if ending == "jpg" else {}
+    path = tmp_path / f"a.{ending}"
+    array = np.full((6, 8, 4), 0.5, np.float32)
+    write_picture(path, {"": array}, kinds={"": Kind.IMAGE}, metadata=ours | foreign, sandbox=UNRESTRICTED)
+    found = read_metadata(path, sandbox=UNRESTRICTED)
+    assert {name: found.get(name) for name in ours} == ours
+    assert ("ImageDescription" in found) == (ending == "jpg" and size < 8_000)
+
+
 @pytest.mark.parametrize(
     ("orientation", "aspect", "expected"),
     [(1, None, 1.0), (1, 2.0, 2.0), (4, 16.0, 16.0), (5, 2.0, 0.5), (8, 0.0625, 16.0), (1, 16.5, 1.0), (1, 0.0, 1.0)],

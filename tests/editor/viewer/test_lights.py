@@ -218,6 +218,10 @@ def test_the_dome_has_every_direction_once(camera: Any) -> None:
     assert flat(camera, tuple(-part for part in camera.right)) == pytest.approx((0.5, 0.0), abs=1e-6)
     assert flat(camera, tuple(-part for part in camera.down)) == pytest.approx((0.0, 0.5), abs=1e-6)
     assert math.hypot(*flat(camera, tuple(-part for part in camera.forward))) == pytest.approx(1.0, abs=1e-6)
+    for eye in np.random.default_rng(9).uniform(-5.0, 5.0, (300, 3)):  # products of unit vectors may be above 1
+        other = look_at(tuple(eye), (0.1, 0.2, 0.3), (1.0, 1.0))
+        assert math.hypot(*flat(other, other.forward)) < 1e-6
+        assert math.hypot(*flat(other, tuple(-part for part in other.forward))) == pytest.approx(1.0, abs=1e-6)
     for direction in np.random.default_rng(1).normal(size=(20, 3)):
         unit = direction / np.linalg.norm(direction)
         assert direction_of(camera, flat(camera, tuple(direction))) == pytest.approx(tuple(unit), abs=2e-5)
