@@ -24,7 +24,7 @@ from halation.editor.toolkit import context
 Color = tuple[float, float, float]
 
 GUIDE = Path(__file__).parent / "data/style_guide.txt"
-"""Panels, and below each its shapes with their corners, widths or radii at a scale of 1, and their colors."""
+"""Panels, and below each its shapes with their corners, widths or radii at a scale of 1, their colors, and pointers."""
 
 _DARK = "panel", "window", "canvas"
 """Grounds: what asks whether a theme is dark looks at these."""

@@ -21,6 +21,7 @@ from halation.authoring.commands import (
 )
 from halation.graph import Graph, Port
 from halation.resources.sandbox import UNRESTRICTED
+from imgui_bundle import imgui
 from still_editor import StillEditor, open_still_editor
 from still_pictures import show_files, show_handles, show_lessons, show_passes, show_search, show_viewer
 from still_screens import (
@@ -98,6 +99,8 @@ def list_looks(still: StillEditor, title: str) -> set[str]:
         still.pane.point(((box[0] + box[2]) / 2, (box[1] + box[3]) / 2))
         still.show(title, 3)
         looks |= {name_shape(shape) for shape in still.pane.shapes.shapes if shape.kind not in UNNAMED}
+        if (pointer := imgui.MouseCursor_(imgui.get_mouse_cursor())) != imgui.MouseCursor_.arrow:
+            looks.add(f"pointer: {pointer.name}")
     still.pane.point((1.0, 1.0))
     return looks
 
