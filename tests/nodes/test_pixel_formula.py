@@ -94,3 +94,18 @@ def test_what_has_no_value_is_zero(run):
     inputs = make_inputs(1)
     for formula in ("1 / 0", "sqrt(-1)", "log(0)", "(-2) ^ 0.5", "asin(2)", "5 % 0", "exp(1000) - exp(1000)"):
         np.testing.assert_array_equal(run(PixelFormula(formula=formula), inputs, output="value"), 0.0)
+
+
+def test_powers_have_a_value_for_each_sign(run):
+    """As numpy's, but 0 where there is none: roots of negative numbers, and powers of 0 below 0."""
+    bases, exponents = (
+        np.array([-2.0, -1.0, -0.5, 0.0, 0.25, 0.5, 1.0, 3.0]),
+        np.array([-3, -2, -1, -0.5, 0, 0.5, 1, 2, 3, 4, 5]),
+    )
+    base, exponent = (part.ravel() for part in np.meshgrid(bases, exponents))
+    picture = np.zeros((1, len(base), 4), np.float32)
+    picture[0, :, 0], picture[0, :, 1] = base, exponent
+    with np.errstate(all="ignore"):
+        expected = np.where(exponent == 0.0, 1.0, np.where(base == 0.0, 0.0, np.nan_to_num(base**exponent)))
+    found = run(PixelFormula(formula="a.r ^ a.g"), {"a": picture}, output="value")
+    np.testing.assert_allclose(found[0, :, 0], expected, rtol=1e-5)
