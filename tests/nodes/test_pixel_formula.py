@@ -109,3 +109,28 @@ def test_powers_have_a_value_for_each_sign(run):
         expected = np.where(exponent == 0.0, 1.0, np.where(base == 0.0, 0.0, np.nan_to_num(base**exponent)))
     found = run(PixelFormula(formula="a.r ^ a.g"), {"a": picture}, output="value")
     np.testing.assert_allclose(found[0, :, 0], expected, rtol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("formula", "expected"),
+    [
+        ("a.r % a.g", lambda x, y: np.where(y == 0.0, 0.0, x - y * np.floor(x / np.where(y == 0.0, 1.0, y)))),
+        ("a.r / a.g", lambda x, y: np.where(y == 0.0, 0.0, x / np.where(y == 0.0, 1.0, y))),
+        ("atan2(a.r, a.g)", np.arctan2),
+    ],
+)
+def test_what_is_divided_by_round_numbers(run, formula, expected):
+    """Also by 1, and where both are 0."""
+    x, y = (
+        part.ravel() for part in np.meshgrid(*[np.array([-1.5, -1.0, -0.75, -0.25, 0.0, 0.25, 0.75, 1.0, 2.0])] * 2)
+    )
+    picture = np.zeros((1, len(x), 4), np.float32)
+    picture[0, :, 0], picture[0, :, 1] = x, y
+    found = run(PixelFormula(formula=formula), {"a": picture}, output="value")
+    np.testing.assert_allclose(found[0, :, 0], expected(x, y), rtol=1e-5, atol=1e-6)
+
+
+def test_a_list_of_two_is_opaque_without_blue(run):
+    inputs = make_inputs(1)
+    found = run(PixelFormula(formula="[a.g, a.r * 0.5]"), inputs)
+    np.testing.assert_allclose(found, opaque(inputs["a"][..., 1], inputs["a"][..., 0] * 0.5, 0.0 * X), rtol=1e-6)
