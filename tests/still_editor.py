@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -29,6 +30,7 @@ from halation.editor.window.assembly import assemble, take_apart
 from halation.editor.window.contexts import Contexts, compose_contexts
 from halation.editor.window.editor import Editor
 from halation.editor.window.panels import DOCKED, OVERLAYS, Panel
+from halation.editor.window.status import draw_status
 from halation.graph import Graph, Port
 from halation.resources.sandbox import UNRESTRICTED
 from imgui_bundle import imgui
@@ -163,6 +165,7 @@ class StillEditor:
         if title not in self.panels:
             makers = {docked.title: docked.make for docked in DOCKED} | dict(OVERLAYS)
             makers["Timeline"] = lambda contexts: Timeline(contexts.timeline)
+            makers["Status"] = lambda contexts: SimpleNamespace(draw=lambda: draw_status(self.editor, contexts))
             self.panels[title] = makers[title](self.contexts)  # pyright: ignore[reportArgumentType]
         return self.panels[title]
 

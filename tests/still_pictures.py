@@ -236,3 +236,19 @@ def show_search(still: StillEditor) -> Screens:
         imgui.get_io().add_input_characters_utf8(words)
         yield f"Graph search {words}", "Graph"
     still.calm("Graph")
+
+
+def show_status(still: StillEditor) -> Screens:
+    """The line at the bottom of the window: hints, messages of each kind, and what the figures may say."""
+    editor, preview = still.editor, still.editor.preview
+    still.pane.size = 3.0 * still.pane.size[0], still.pane.size[1]
+    for place in ("Status", "Viewer", "Graph"):
+        still.show(place)
+        still.pane.point(still.find_point(place) if place in still.places else still.pane.at)
+        yield f"over {place}", "Status"
+    preview.paused = True
+    yield "paused", "Status"
+    preview.paused = False
+    for level in ("info", "warning", "error"):
+        editor.log.add(f"a message that is an {level}, " + "and is longer than the line has room for, " * 5, level)
+        yield level, "Status"

@@ -6,7 +6,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...language.translation import translate, translate_plural
-from ..theme.style import EM, vec4
+from ..theme.style import vec4
 from ..toolkit.places import record
 from ..toolkit.words import cut_end, draw_dim, font, level_color
 from ..viewer.wanted import A
@@ -27,7 +27,7 @@ def draw_status(editor: Editor, contexts: Contexts) -> None:
     newest = editor.log.entries[-1] if editor.log.entries else None
     imgui.set_cursor_pos_x(imgui.get_style().window_padding.x)
     if newest and editor.log.age(newest) < SECONDS:
-        text = cut_end(newest.sentence.splitlines()[0], left - 2 * EM)
+        text = cut_end(newest.sentence.splitlines()[0], left - 2 * imgui.get_font_size())
         imgui.text_colored(vec4(level_color(editor.palette, newest.level)), text)
     else:
         _draw_hints(editor, contexts, left)

@@ -29,6 +29,7 @@ from still_pictures import (
     show_opened_panels,
     show_passes,
     show_search,
+    show_status,
     show_viewer,
 )
 from still_screens import (
@@ -62,7 +63,8 @@ RENEW = bool(os.environ.get("HALATION_RENEW"))
 
 SCREENS: tuple[Callable[[StillEditor], Screens], ...] = (
     show_typical_nodes, show_values, show_panels, show_animation, show_renders, show_handles, show_viewer, show_files,
-    show_passes, show_lessons, show_search, show_opened_fields, show_opened_panels, show_dialogs, show_more_dialogs,
+    show_passes, show_lessons, show_search, show_status, show_opened_fields, show_opened_panels, show_dialogs,
+    show_more_dialogs,
 )  # fmt: skip
 
 Place = tuple[str, int, int, list[int]]

@@ -23,7 +23,7 @@ from halation.graph import Graph, Port
 from halation.resources.sandbox import UNRESTRICTED
 from imgui_bundle import imgui
 from still_editor import StillEditor, open_still_editor
-from still_pictures import show_files, show_handles, show_lessons, show_passes, show_search, show_viewer
+from still_pictures import show_files, show_handles, show_lessons, show_passes, show_search, show_status, show_viewer
 from still_screens import (
     Screens,
     show_animation,
@@ -83,7 +83,7 @@ FAULTY = {
 
 SCREENS: tuple[Callable[[StillEditor], Screens], ...] = (
     show_typical_nodes, show_values, show_panels, show_animation, show_renders, show_handles, show_viewer, show_files,
-    show_passes, show_lessons, show_search, show_dialogs, show_more_dialogs, show_canvas,
+    show_passes, show_lessons, show_search, show_status, show_dialogs, show_more_dialogs, show_canvas,
 )  # fmt: skip
 
 
