@@ -23,7 +23,10 @@ _CODE_TYPES = b'"glsl"', b'"isf"'
 _START = 1 << 20
 """Bytes of a graph that are looked at: more than most have. Later code is watched too, by a process of its own."""
 
-_LIBRARIES = "bz2", "datetime", "decimal", "dis", "lzma", "select", "zlib"
+_LIBRARIES = (
+    "_bisect", "_blake2", "_contextvars", "_hashlib", "_heapq", "_json", "_posixsubprocess", "_socket", "_uuid", "bz2",
+    "datetime", "decimal", "dis", "fcntl", "lzma", "mmap", "msgspec", "select", "zlib",
+)  # fmt: skip
 """Modules of the standard library that typer imports and that are libraries of the system. The system loads one at a
 time: after the driver has begun, the first of them would wait for it, 14 ms, and Python with it."""
 
