@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from halation.presets import paths
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="only Linux keeps to it")
 
@@ -109,3 +110,34 @@ def test_a_graph_that_is_no_file_is_left_to_the_command(tmp_path: Path) -> None:
 def test_where_the_system_refuses_it_the_command_goes_on(tmp_path: Path, kind: str, before: str) -> None:
     """It says itself what it lacks, if it does. A debugger may have threads, which a copy would lack."""
     assert begin(tmp_path, "render", "GRAPH", "-o", "out.exr", kind=kind, before=before) == ["alone True"]
+
+
+BEFORE_NUMPY = """
+import sys
+from importlib import import_module
+from importlib.machinery import ExtensionFileLoader
+
+def list_libraries():
+    specs = {name: getattr(module, "__spec__", None) for name, module in sys.modules.items()}
+    return {name for name, spec in specs.items() if isinstance(getattr(spec, "loader", None), ExtensionFileLoader)}
+
+from halation.cli.head_start import _LIBRARIES
+import halation.renderer.opengl.warming
+for name in _LIBRARIES:
+    import_module(name)
+before = list_libraries()
+import halation.cli.program, halation.cli.render, halation.cli.execute, halation.document, halation.nodes
+from halation.document import load
+from halation.resources.sandbox import UNRESTRICTED
+load(sys.argv[1], sandbox=UNRESTRICTED)
+print("numpy" in sys.modules, sorted(list_libraries() - before))
+"""
+
+
+@pytest.mark.parametrize("name", ["soft_bloom", "turntable"])
+def test_nothing_that_waits_for_the_driver_is_imported_before_numpy(name: str) -> None:
+    path = next(path for path in paths() if path.stem == name)
+    process = subprocess.run(
+        [sys.executable, "-c", BEFORE_NUMPY, str(path)], capture_output=True, text=True, check=True
+    )
+    assert process.stdout.strip() == "False []"

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from importlib.machinery import EXTENSION_SUFFIXES
+from pathlib import Path
 
 import pytest
 from halation.renderer import Renderer, open_device
+from halation.renderer.opengl import warming
 from halation.renderer.opengl.warming import wait_for_driver, warm
 from halation.resources.sandbox import UNRESTRICTED
 
@@ -39,3 +42,33 @@ def test_the_environment_stays_while_a_driver_is_loaded() -> None:
     """Drivers read it meanwhile, and another thread that changes it may take the memory from under them."""
     process = subprocess.run([sys.executable, "-c", IMPORTS], capture_output=True, text=True, check=True)
     assert process.stdout.strip() == "[]"
+
+
+LOADED = """
+import sys
+from pathlib import Path
+from halation.renderer.opengl.warming import wait_for_driver, warm
+
+def is_loaded():
+    return "OpenImageIO" in Path("/proc/self/maps").read_text()
+
+before = is_loaded()
+warm()
+wait_for_driver()
+after, names = is_loaded(), {*sys.modules} & {"numpy", "OpenImageIO"}
+import OpenImageIO
+print(before, after, names, OpenImageIO.ImageBuf(OpenImageIO.ImageSpec(2, 2, 1, "float")).spec().width)
+"""
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="this system has no early loading")
+def test_the_library_of_openimageio_is_there_before_python_imports_it() -> None:
+    process = subprocess.run([sys.executable, "-c", LOADED], capture_output=True, text=True, check=True)
+    assert process.stdout.strip() == "False True set() 2"
+
+
+def test_what_cannot_be_loaded_early_is_no_error(tmp_path: Path) -> None:
+    """No such file, and one that is no library."""
+    warming._load_openimageio(tmp_path)
+    (tmp_path / f"OpenImageIO{EXTENSION_SUFFIXES[0]}").write_bytes(b"no library")
+    warming._load_openimageio(tmp_path)
