@@ -11,7 +11,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -165,7 +164,7 @@ class StillEditor:
         if title not in self.panels:
             makers = {docked.title: docked.make for docked in DOCKED} | dict(OVERLAYS)
             makers["Timeline"] = lambda contexts: Timeline(contexts.timeline)
-            makers["Status"] = lambda contexts: SimpleNamespace(draw=lambda: draw_status(self.editor, contexts))
+            makers["Status"] = lambda contexts: _StatusLine(self.editor, contexts)
             self.panels[title] = makers[title](self.contexts)  # pyright: ignore[reportArgumentType]
         return self.panels[title]
 
@@ -179,6 +178,17 @@ class StillEditor:
             return body()
 
         return draw
+
+
+@dataclass(frozen=True)
+class _StatusLine:
+    """The line at the bottom of the window, as if it were a panel."""
+
+    editor: Editor
+    contexts: Contexts
+
+    def draw(self) -> None:
+        draw_status(self.editor, self.contexts)
 
 
 def _make_at_once(cache: BackgroundCache[Any, Any], key: Any) -> Any:
