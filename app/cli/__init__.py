@@ -27,16 +27,16 @@ def main() -> None:
     threads that numpy starts for large ones would cost time. Each thread takes address space, and libraries wait for
     ever where a limit (`ulimit -v`) leaves none for theirs.
     """
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    if has_memory_limit():
-        os.environ.setdefault("OPENIMAGEIO_THREADS", "1")
-    gc.set_threshold(_YOUNG)
-    _replace_closed_streams()
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")
-    raise_on_requests()
     try:
+        raise_on_requests()
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+        if has_memory_limit():
+            os.environ.setdefault("OPENIMAGEIO_THREADS", "1")
+        gc.set_threshold(_YOUNG)
+        _replace_closed_streams()
+        for stream in (sys.stdout, sys.stderr):
+            if isinstance(stream, TextIOWrapper):
+                stream.reconfigure(errors="backslashreplace")
         code = _run(sys.argv[1:])
     except KeyboardInterrupt:  # while modules are still being imported
         code = _INTERRUPTED

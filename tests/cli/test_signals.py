@@ -196,3 +196,22 @@ def test_an_interrupt_while_a_library_is_loaded(module: str, call: int, name: st
     code = LOADING.format(module=module, call=call, name=name)
     process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert process.returncode == 130, process.stderr
+
+
+EARLY = """
+import os, signal
+from halation import cli
+
+def interrupt():
+    os.kill(os.getpid(), signal.SIGINT)
+    return False
+
+cli.{name} = interrupt
+cli.main()
+"""
+
+
+@pytest.mark.parametrize("name", ["has_memory_limit", "_replace_closed_streams"])
+def test_an_interrupt_before_the_command_is_known_is_no_traceback(name: str) -> None:
+    process = subprocess.run([sys.executable, "-c", EARLY.format(name=name)], capture_output=True, text=True)
+    assert (process.returncode, process.stderr) == (130, "")
