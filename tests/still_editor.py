@@ -233,6 +233,11 @@ def open_still_editor(
             take_apart(editor)
 
 
+def name_kind(place: str) -> str:
+    """What places of one kind have in common: "field bloom.size" is a field, "button play" is the button "play"."""
+    return " ".join(place.split()[: 2 if place.startswith("button") else 1])
+
+
 def is_alike(one: object, other: object) -> bool:
     """True if all is the same but a hundredth of a number: places have whole pixels."""
     if isinstance(one, dict) and isinstance(other, dict):

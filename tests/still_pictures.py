@@ -14,7 +14,7 @@ from halation.graph import Expression, Graph, Input, Key, Keys, Output, Port
 from halation.nodes import Kind, Node, RotoShape, Value, catalogue, join_points, name_roto_shapes, split_points
 from halation.nodes.input.read_image import ReadImage
 from imgui_bundle import imgui
-from still_editor import StillEditor
+from still_editor import StillEditor, name_kind
 from still_screens import Screens, describe_kind
 
 RENDER = Path(__file__).parent / "data/blender45_multilayer.exr"
@@ -205,7 +205,7 @@ def _open(still: StillEditor, places: Sequence[tuple[str, str]], shown: str = "i
         still.show(title)
         seen = set[object]()
         for place in sorted(still.places):
-            kind: object = " ".join(place.split()[: 2 if place.startswith("button") else 1])
+            kind: object = name_kind(place)
             if kind == "field" and (value := find_value(session.graph, place.removeprefix("field "))):
                 kind = describe_kind(value)
             if kind in seen:

@@ -12,7 +12,7 @@ from halation.graph import Port
 from halation.nodes import catalogue
 from imgui_bundle import imgui
 from still_acts import describe, list_clicked, open_prepared
-from still_editor import StillEditor
+from still_editor import StillEditor, name_kind
 from still_window import CHOSEN, DISABLED
 
 PANELS = "Viewer", "Viewer of data", "Log", "Renders", "Animation", "Timeline", "Scopes", "Inspector", "Graph", "Code"
@@ -59,7 +59,7 @@ def list_menus(folder: Path, shown: str) -> list[tuple[str, int]]:
     title = shown.partition(" of ")[0]
     for still in open_shown(folder, shown):
         places = list_clicked(still, title)
-    kinds = {" ".join(place.split()[: 2 if place.startswith("button") else 1]): place for place in places}
+    kinds = {name_kind(place): place for place in places}
     menus = list[tuple[str, int]]()
     for place in kinds.values():
         for button in (0, 1):

@@ -22,7 +22,7 @@ from halation.authoring.commands import (
 from halation.graph import Graph, Port
 from halation.resources.sandbox import UNRESTRICTED
 from imgui_bundle import imgui
-from still_editor import StillEditor, open_still_editor
+from still_editor import StillEditor, name_kind, open_still_editor
 from still_pictures import show_files, show_handles, show_lessons, show_passes, show_search, show_status, show_viewer
 from still_screens import (
     Screens,
@@ -92,7 +92,7 @@ def list_looks(still: StillEditor, title: str) -> set[str]:
     still.show(title, 4)
     seen, looks, places = set[str](), set[str](), {"": (0.0, 0.0, 2.0, 2.0), **still.places}
     for place, box in places.items():
-        kind = " ".join(place.split()[: 2 if place.startswith("button") else 1])
+        kind = name_kind(place)
         if kind in seen:
             continue
         seen.add(kind)
