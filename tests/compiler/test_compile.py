@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
-from halation.compiler import explain, write_dot
+from halation.compiler import NULL, explain, write_dot
 from halation.errors import GraphError
 from halation.graph import Control, Graph, Group, Input, Output, Port, Settings
 from halation.nodes import Kind, catalogue
@@ -13,6 +13,7 @@ from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.color.saturation import Saturation
 from halation.nodes.input.checker import Checker
+from msgspec.structs import replace
 
 Noise, Displace, Statistics = (catalogue()[name] for name in ("noise", "displace", "luminance_statistics"))
 
@@ -40,6 +41,34 @@ def test_pointwise_neighbors_share_a_pass(plan):
 def test_a_filter_ends_a_pass_and_what_follows_starts_one(plan):
     graph = chain(Exposure(stops=1.0), GaussianBlur(sigma=2.0), Exposure(stops=-1.0))
     assert functions(plan(graph)) == [("exposure",), ("convolve x",), ("convolve y",), ("exposure",)]
+
+
+def test_decimations_share_a_program_that_is_compiled_for_the_first(plan):
+    """Only where all of them are small, their taps stay in a loop, which compiles faster."""
+    graph = Graph().add("noise", Noise()).add("blur", GaussianBlur(sigma=50.0)).add_output("image", Output())
+    graph = graph.connect(Port("noise", "out"), Port("blur", "image")).connect(
+        Port("blur", "out"), Port("outputs", "image")
+    )
+    programs = dict[tuple[int, int], list[str]]()
+    for size in ((1280, 720), (320, 200)):
+        made = plan(graph, size=size, target=replace(NULL, form="compute"))
+        programs[size] = [one.shader.source for one in made.passes if one.functions[0].startswith("decimate")]
+    for size, (first, *others) in programs.items():
+        assert len(others) == 3, size
+        assert set(others) == {first}, size
+        assert ("for (" in first) == (size == (320, 200))
+
+
+def test_only_what_shrinks_a_picture_for_a_blur_looks_for_holes(plan):
+    made = plan(chain(GaussianBlur(sigma=50.0)), target=replace(NULL, form="compute"))
+    tested = {one.functions[0]: "? vec4(0.0) : c" in one.shader.source for one in made.passes}
+    assert tested == {
+        "decimate x": True,
+        "decimate y": True,
+        "convolve x": False,
+        "convolve y": False,
+        "enlarge": False,
+    }
 
 
 def test_what_is_wanted_in_between_is_written_on_the_way(plan):

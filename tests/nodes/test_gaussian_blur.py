@@ -199,7 +199,7 @@ def test_sigma_zero_changes_nothing(run, hdr):
 
 
 @pytest.mark.parametrize("sigma", [0.5, 3.0, 20.0])
-@pytest.mark.parametrize("hole", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("hole", [np.nan, np.inf, -np.inf, 2.0**127, -3.4e38])
 def test_a_hole_is_skipped(run, hdr, sigma, hole):
     picture = hdr(45, 39)
     picture[20, 22, 1] = hole
@@ -207,6 +207,14 @@ def test_a_hole_is_skipped(run, hdr, sigma, hole):
     patched[20, 22] = 0.0
     found = run(GaussianBlur(sigma=sigma), {"image": picture})
     np.testing.assert_array_equal(found, run(GaussianBlur(sigma=sigma), {"image": patched}))
+
+
+@pytest.mark.parametrize("sigma", [0.5, 3.0, 20.0, 80.0])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_the_largest_numbers_that_are_no_holes_stay(run, sigma, sign):
+    largest = np.float32(sign * np.nextafter(np.float32(2.0**127), np.float32(0.0)))
+    picture = np.full((90, 130, 4), largest)
+    np.testing.assert_allclose(run(GaussianBlur(sigma=sigma), {"image": picture}), picture, rtol=1e-5)
 
 
 @pytest.mark.parametrize(("sigma", "tolerance"), [(5.0, 1e-5), (10.0, 3e-4), (50.0, 3e-4)])

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Set
 
-from halation.nodes import Edge, glsl_type
+from halation.nodes import glsl_type
 
-from ..ir import BLOCK, MAX_WEIGHTS, Accessor, Convolve, Read, Reduce, Ref
+from ..ir import BLOCK, MAX_WEIGHTS, Accessor, Convolve, Gather, Reduce, Ref
 from .names import ShaderNames
 
 LONG_STRIP = 8
@@ -26,17 +26,19 @@ SMALL_PIXELS = 2**18
 invocation of others. Compiling more takes longer than it saves on them. Chosen by judgement."""
 
 
-def write_accessor(names: ShaderNames, item: Accessor, edge: Edge, used_words: Set[str] = frozenset()) -> list[str]:
+def write_accessor(
+    names: ShaderNames, reader: Convolve | Gather, item: Accessor, used_words: Set[str] = frozenset()
+) -> list[str]:
     """`<name>_size`, `<name>_raw`, `<name>_at` and `<name>_near` for one picture; `<name>_has` if that word is used.
 
     Places are limited to 2^24, up to which floats count single pixels: GLSL leaves open what a larger float is as an
-    int.
+    int. Means take no number whose double is infinite, so that no sum on the way to one is, and their readers need no
+    test for holes.
     """
-    name, glsl, has, is_finite = item.name, item.glsl, "true", False
+    name, glsl, edge, has, is_whole = item.name, item.glsl, reader.edge, "true", False
     if isinstance(item.operand, Ref):
-        size, op = names.program.shape(item.operand).size, names.program.ops[item.operand.op]
-        is_finite = names.by_image and isinstance(op, Read) and op.finite
-        names.uniform("ivec2", size, f"{name}_size")
+        is_whole = names.program.is_whole(reader, item.operand, names.by_image)
+        names.uniform("ivec2", names.program.shape(item.operand).size, f"{name}_size")
         extent, has = names.program.extents.get(item.operand), f"inside(p, {name}_size)"
         if extent and edge in ("clamp", "black"):
             first = names.uniform("ivec2", extent.start, f"{name}_first")
@@ -52,12 +54,13 @@ def write_accessor(names: ShaderNames, item: Accessor, edge: Edge, used_words: S
     else:
         names.uniform("ivec2", (1, 1), f"{name}_size")
         value = names.constant(item.operand, glsl)
+    tested = "2.0 * c" if reader.averages else "c"
     return [
         *([f"bool {name}_has(ivec2 p) {{ return {has}; }}"] if f"{name}_has" in used_words else []),
         f"{glsl} {name}_raw(ivec2 p) {{ return {value}; }}",
         f"{glsl} {name}_at(ivec2 p) {{ return {name}_raw(p); }}"
-        if is_finite
-        else f"{glsl} {name}_at(ivec2 p) {{ {glsl} c = {name}_raw(p); return is_hole(c) ? {glsl}(0.0) : c; }}",
+        if is_whole
+        else f"{glsl} {name}_at(ivec2 p) {{ {glsl} c = {name}_raw(p); return is_hole({tested}) ? {glsl}(0.0) : c; }}",
         f"{glsl} {name}_near(vec2 p) {{",
         "    p = clamp(p, -16777216.0, 16777216.0) - 0.5;",
         "    vec2 corner = floor(p), t = p - corner;",
@@ -77,7 +80,7 @@ def write_convolution_accessor(names: ShaderNames, op: Convolve, is_strip: bool)
         names.uniform("int", len(op.weights), "taps")
     glsl = glsl_type(names.program.shape(op.image).channels)
     block = f"layout(std140) uniform Weights {{ vec4 weights[{MAX_WEIGHTS // 4}]; }};"
-    return [block, *write_accessor(names, Accessor("image", glsl, op.image), op.edge)]
+    return [block, *write_accessor(names, op, Accessor("image", glsl, op.image))]
 
 
 def write_convolution(names: ShaderNames, op: Convolve) -> list[str]:

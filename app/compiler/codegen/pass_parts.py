@@ -45,6 +45,12 @@ class PassContext(Struct, frozen=True):
         sizes = map(self.program.size_on_device, (*self.group.reads, *self.group.writes))
         return all(width * height <= bodies.SMALL_PIXELS for width, height in sizes)
 
+    def is_small_decimation(self, op: Convolve) -> bool:
+        """Whether a decimation has so few pixels, and the first of its kind, which has compiled the program of all."""
+        first = self.program.find_first_decimation(op)
+        sizes = first.size, self.program.size_on_device(first.image)
+        return all(width * height <= bodies.SMALL_PIXELS for width, height in sizes)
+
     @property
     def functions(self) -> list[FunctionOp]:
         """The members that call functions of files."""
@@ -99,7 +105,7 @@ def _(root: Call, context: PassContext) -> PassParts:
         line
         for gather in inlined
         for item in gather.accessors
-        for line in bodies.write_accessor(context.names, item, gather.op.edge, gather.text.words)
+        for line in bodies.write_accessor(context.names, gather.op, item, gather.text.words)
     ]
     body, values = _write_calls(context)
     shaders = [*([EDGES] if inlined else []), *_pointwise_files(context)]
@@ -118,7 +124,7 @@ def _(root: Reduce, context: PassContext) -> PassParts:
 @write_pass_parts.register
 def _(root: Convolve, context: PassContext) -> PassParts:
     names = context.names
-    is_strip = names.form == "compute" and not (root.stride > 1 and context.is_small)
+    is_strip = names.form == "compute" and not (root.stride > 1 and context.is_small_decimation(root))
     functions, body = bodies.write_convolution_accessor(names, root, is_strip), list[str]()
     if not is_strip:
         write = bodies.write_convolution if names.form == "fragment" else bodies.write_small_decimation
@@ -132,7 +138,7 @@ def _(root: Convolve, context: PassContext) -> PassParts:
 def _(root: Gather, context: PassContext) -> PassParts:
     names = context.names
     words = context.library.find_words(root.shader, root.function, root.owner)
-    functions = [line for item in root.accessors for line in bodies.write_accessor(names, item, root.edge, words)]
+    functions = [line for item in root.accessors for line in bodies.write_accessor(names, root, item, words)]
     arguments = [names.argument(item, {}) for item in root.parameters]
     accessors = frozenset(f"{item.name}_{suffix}" for item in root.accessors for suffix in ACCESSORS)
     body, results = list[str](), [f"r{ref.output}" for ref in context.group.writes]

@@ -214,6 +214,8 @@ class Gather(FunctionOp, frozen=True, kw_only=True):
     """Shows pixels of its picture at other places, which are known for the frame alone."""
     stretches: bool = False
     """Shows all of its picture in another number of pixels."""
+    averages: bool = False
+    """Whether its pixels are weighted means of those that it reads, as those of a convolution that averages."""
     ends_as: tuple[Ref, int] | None = None
     """A picture, and the axis along which this one ends where that does: what is read has pixels that an edge made."""
 
@@ -292,6 +294,9 @@ class Convolve(Op, frozen=True):
     stride: int
     origin: int
     edge: Edge
+    averages: bool = False
+    """Whether its weights are positive and add up to 1. It leaves out what is not finite or too large to be added up,
+    so that all it makes is finite."""
 
     @property
     def label(self) -> str:

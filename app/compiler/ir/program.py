@@ -7,10 +7,12 @@ from types import MappingProxyType
 
 from halation.nodes import CameraModel, Size
 from msgspec import Struct, field
+from msgspec.structs import replace
 
 from ...graph import Port
 from ..areas import Region
 from .operation import Op
+from .operations import Convolve, Gather, Read
 from .values import PictureShape, Ref
 
 
@@ -29,11 +31,19 @@ class Builder:
 
     def add(self, op: Op) -> Ref:
         """The first output of `op`."""
+        op = self._with_common_edge(op)
         number = self.numbers.setdefault(op, len(self.ops))
         if number == len(self.ops):
             self.ops.append(op)
         self.added.append(number)
         return Ref(number)
+
+    def _with_common_edge(self, op: Op) -> Op:
+        """Pictures of one pixel go on alike beyond their edges, unless what follows is black."""
+        if not isinstance(op, Convolve | Gather) or op.edge == "black":
+            return op
+        is_one_pixel = all(self.shape(ref).size == (1, 1) for ref in op.reads())
+        return replace(op, edge="clamp") if is_one_pixel else op
 
     def inspect(self, ref: Ref) -> Op:
         """The operation behind an output, for a caller that has to know more than its shape."""
@@ -64,6 +74,31 @@ class LoweredProgram(Struct, frozen=True):
     """The pixels of them that are made, where they are more than the frame."""
     windows: Mapping[Ref, Region] = field(default_factory=lambda: MappingProxyType({}))
     """The parts of pictures that are made or read, of those that are not whole on the device."""
+
+    def find_first_decimation(self, op: Convolve) -> Convolve:
+        """The first of the decimations by the same factor that follow each other and end in this one. All of them run
+        the program that is compiled for the first.
+        """
+        before = self.ops[op.image.op]
+        if isinstance(before, Convolve) and before.stride == op.stride > 1:
+            return self.find_first_decimation(before)
+        return op
+
+    def is_whole(self, reader: Op, picture: Ref, by_image: bool) -> bool:
+        """Whether a picture has no hole for an operation that reads it anywhere: neither NaN nor infinity, nor, for one
+        that averages, a number that is too large. What is known of files counts only where they are read as images.
+
+        All decimations that run one program read as the first of them must.
+        """
+        if isinstance(reader, Convolve):
+            reader = self.find_first_decimation(reader)
+            picture = reader.image
+        if not isinstance(reader, Convolve | Gather):
+            return False
+        made_by = self.ops[picture.op]
+        if isinstance(made_by, Read):
+            return by_image and made_by.finite and (made_by.half or not reader.averages)
+        return isinstance(made_by, Convolve | Gather) and made_by.averages
 
     @property
     def kept_refs(self) -> tuple[Ref, ...]:

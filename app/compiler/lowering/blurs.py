@@ -6,6 +6,7 @@ and enlargements come in the opposite order.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from halation.nodes import Edge, Size
@@ -64,7 +65,8 @@ class BlurBuilder:
     ) -> Ref:
         """Convolve along an axis; `length` is how many pixels that makes."""
         shape = self._resize(image, axis, length)
-        return self._builder.add(Convolve((shape,), self._owner, image, axis, weights, stride, origin, edge))
+        averages = min(weights) >= 0.0 and math.isclose(sum(weights), 1.0, rel_tol=1e-3)
+        return self._builder.add(Convolve((shape,), self._owner, image, axis, weights, stride, origin, edge, averages))
 
     def _enlarge(
         self,
@@ -85,7 +87,15 @@ class BlurBuilder:
         light = self._library.is_light(*ENLARGE, self._owner)
         return self._builder.add(
             Gather(
-                (shape,), self._owner, *ENLARGE, numbers, accessors=(accessor,), edge=edge, light=light, ends_as=ends_as
+                (shape,),
+                self._owner,
+                *ENLARGE,
+                numbers,
+                accessors=(accessor,),
+                edge=edge,
+                light=light,
+                averages=True,
+                ends_as=ends_as,
             )
         )
 

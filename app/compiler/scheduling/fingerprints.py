@@ -64,7 +64,8 @@ class PassFingerprints:
         for index in group.members:
             op = ops[index]
             parts.append(self._describe(index, op))
-            parts += [places[ref] for ref in op.reads()]
+            for ref in op.reads():
+                parts += [places[ref], self._program.is_whole(op, ref, self._target.loads_images)]
             for output in range(op.outputs):
                 places[Ref(index, output)] = len(places)
         target, root = self._target, ops[group.root]
