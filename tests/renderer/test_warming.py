@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import platform
 import subprocess
 import sys
 from importlib.machinery import EXTENSION_SUFFIXES
@@ -75,3 +76,30 @@ def test_what_cannot_be_loaded_early_is_no_error(tmp_path: Path) -> None:
             (tmp_path / f"OpenImageIO{EXTENSION_SUFFIXES[0]}").write_bytes(content)
         warming._load_openimageio(tmp_path)
         assert str(tmp_path) not in Path("/proc/self/maps").read_text()
+
+
+ROOM = """
+import threading
+from halation.renderer.opengl import warming
+
+def measure():
+    \"\"\"MiB of the largest mapping that can be written.\"\"\"
+    lines = [line.split() for line in open("/proc/self/maps")]
+    ends = [[int(end, 16) for end in line[0].split("-")] for line in lines if line[1] == "rw-p"]
+    return max(last - first for first, last in ends) >> 20
+
+def work():
+    before = measure()
+    warming._make_room()
+    print(before < 24, measure() >= 24, measure() < 64)
+
+thread = threading.Thread(target=work)
+thread.start()
+thread.join()
+"""
+
+
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="this system has no early loading")
+def test_a_heap_has_room_for_the_strings_of_openimageio_at_once() -> None:
+    process = subprocess.run([sys.executable, "-c", ROOM], capture_output=True, text=True, check=True)
+    assert process.stdout.strip() == "True True True"

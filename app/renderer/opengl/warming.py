@@ -20,7 +20,10 @@ _MOST_DEVICES = 32
 """Devices of EGL that are listed: far more than a machine has."""
 _DEVICE = 0x313F
 """EGL_PLATFORM_DEVICE_EXT."""
-
+_STRINGS = 25 << 20
+"""Bytes of the table of strings that OpenImageIO makes when it is loaded, in 6,144 blocks."""
+_LARGEST_BLOCK = 120 << 10
+"""Bytes of a block that is part of a heap: from 128 KiB on, it would have a mapping of its own."""
 
 _THREAD = "driver"
 
@@ -68,8 +71,23 @@ def _load_openimageio(folder: Path) -> None:
     dlopen.argtypes, dlopen.restype = (ctypes.c_char_p, ctypes.c_int), ctypes.c_void_p
     for suffix in EXTENSION_SUFFIXES:
         if (file := folder / f"OpenImageIO{suffix}").exists():
+            _make_room()
             dlopen(os.fsencode(file), sys.getdlopenflags())
             return
+
+
+def _make_room() -> None:
+    """Have the heap of this thread grow at once. It would ask the system for each page of OpenImageIO's strings, which
+    takes a third of the time to load it: only the heap of the first thread grows by more than a page.
+
+    Python's lock is kept: given up in hundreds of calls, it would be waited for as often.
+    """
+    library = ctypes.PyDLL(None)
+    library.malloc.argtypes, library.malloc.restype = (ctypes.c_size_t,), ctypes.c_void_p
+    library.free.argtypes, library.free.restype = (ctypes.c_void_p,), None
+    blocks = [library.malloc(_LARGEST_BLOCK) for _ in range(_STRINGS // _LARGEST_BLOCK)]
+    for block in reversed(blocks):
+        library.free(block)
 
 
 def _load_driver() -> None:
