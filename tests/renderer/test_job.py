@@ -16,12 +16,11 @@ from halation.nodes import catalogue
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.renderer import Renderer, RenderRequest, open_device
-from halation.renderer.execution.array_pool import ArrayPool
 from halation.renderer.execution.decoding import MAX_LOOKAHEAD, MAX_LOOKAHEAD_BYTES, limit_lookahead
 from halation.renderer.execution.executor import Executor
 from halation.renderer.jobs.job import OutputSettings, run_job
 from halation.renderer.jobs.write_queue import MAX_WAITING, MAX_WAITING_BYTES, WriteQueue
-from halation.resources.large_arrays import create_array
+from halation.resources import large_arrays
 from halation.resources.sandbox import UNRESTRICTED
 
 FRAMES = range(1, 13)
@@ -201,41 +200,24 @@ def test_a_still_sequence_is_computed_once(graph, shot):
     engine.close()
 
 
-def test_arrays_are_used_again(engine, graph, shot, monkeypatch):
-    """A handful for all frames, and none while it is still to be written."""
-    taken, lent, take, write = dict[int, np.ndarray](), set[int](), ArrayPool.take, media.write_picture
+def test_pages_are_used_again(engine, graph, shot, monkeypatch):
+    """Those of a few frames for all, and none while it is still to be written."""
+    monkeypatch.setattr(large_arrays, "LARGE", 1)
+    created, write = list[object](), media.write_picture
+    create = large_arrays._create_pages
 
-    def counted(self, shape, dtype):
-        array = take(self, shape, dtype)
-        assert id(array) not in lent
-        lent.add(id(array))
-        taken[id(array)] = array
-        return array
+    def counted(nbytes):
+        created.append(nbytes)
+        return create(nbytes)
 
     def slow(path, layers, **options):
         threading.Event().wait(0.005)
         write(path, layers, **options)
-        lent.difference_update(id(array if array.base is None else array.base) for array in layers.values())
 
-    monkeypatch.setattr(ArrayPool, "take", counted)
+    monkeypatch.setattr(large_arrays, "_create_pages", counted)
     monkeypatch.setattr(media, "write_picture", slow)
     run_job(engine, graph, RenderRequest(), writing(shot), tuple(FRAMES))
-    assert len(taken) <= MAX_WAITING + 2 and values(shot) == [2.0 * frame for frame in FRAMES]
-
-
-def test_arrays_of_other_sizes_are_not_mixed_up():
-    arrays = ArrayPool()
-    one, other = arrays.take((2, 3, 4), np.float32), arrays.take((2, 3, 4), np.float16)
-    arrays.give([one[..., :3], other])
-    assert arrays.take((2, 3, 4), np.float16) is other and arrays.take((3, 2, 4), np.float32) is not one
-    assert arrays.take((2, 3, 4), np.float32) is one and arrays.take((2, 3, 4), np.float32) is not one
-
-
-def test_arrays_with_pages_of_their_own_are_lent_again():
-    arrays = ArrayPool(create_array)
-    one = arrays.take((1024, 1024, 4), np.float32)
-    arrays.give([one[..., :3]])
-    assert arrays.take((1024, 1024, 4), np.float32) is one
+    assert len(created) <= MAX_WAITING + 4 < len(FRAMES) and values(shot) == [2.0 * frame for frame in FRAMES]
 
 
 def test_textures_make_room_for_the_pixels_of_the_last_frame(graph, shot, monkeypatch):
@@ -243,9 +225,9 @@ def test_textures_make_room_for_the_pixels_of_the_last_frame(graph, shot, monkey
     engine = Renderer(open_device(sandbox=UNRESTRICTED), budget=0, sandbox=UNRESTRICTED)
     allocated, download = list[int](), Executor.download
 
-    def watched(self, plan, number, arrays):
+    def watched(self, plan, number, create):
         allocated.append(self.textures.allocated - plan.surfaces[number].nbytes)
-        return download(self, plan, number, arrays)
+        return download(self, plan, number, create)
 
     monkeypatch.setattr(Executor, "download", watched)
     run_job(engine, graph, RenderRequest(), writing(shot), tuple(FRAMES))

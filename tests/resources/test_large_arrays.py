@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 import pytest
-from halation.resources.large_arrays import LARGE, create_array
+from halation.resources.large_arrays import LARGE, MAX_SPARE, create_array, reuse_pages
 from resident import count_resident, needs_proc
 
 
@@ -33,3 +35,52 @@ def test_pages_go_back_to_the_system_with_the_last_view() -> None:
 def test_what_no_machine_has_is_a_memory_error() -> None:
     with pytest.raises(MemoryError):
         create_array((2**30, 2**30), np.float32)
+
+
+def find_address(array: np.ndarray) -> int:
+    return array.__array_interface__["data"][0]
+
+
+@pytest.mark.parametrize("platform", ["linux", "win32", "darwin"])
+def test_pages_are_used_again_when_no_view_needs_them(monkeypatch: pytest.MonkeyPatch, platform: str) -> None:
+    if platform != sys.platform:
+        monkeypatch.setattr(sys, "platform", platform)
+    with reuse_pages():
+        first = create_array((LARGE, 2), np.uint8)
+        address, view = find_address(first), first[::2, :1].T
+        first.fill(7)
+        del first
+        other = create_array((LARGE * 2,), np.uint8)
+        other.fill(1)
+        assert (view == 7).all() and find_address(other) != address
+        del view
+        smaller = create_array((LARGE,), np.uint8)
+        again = create_array((LARGE // 4, 4), np.float16)
+        assert find_address(again) == address != find_address(smaller)
+
+
+@needs_proc
+def test_pages_of_a_few_arrays_are_kept_until_the_end() -> None:
+    before = count_resident()
+    with reuse_pages():
+        with reuse_pages():
+            arrays = [create_array((LARGE,), np.uint8) for _ in range(2 * MAX_SPARE)]
+            for array in arrays:
+                array.fill(1)
+            del array, arrays
+        assert (MAX_SPARE - 0.5) * LARGE < count_resident() - before < (MAX_SPARE + 0.5) * LARGE
+    assert count_resident() - before < LARGE / 2
+    array = create_array((LARGE,), np.uint8)
+    array.fill(1)
+    del array
+    assert count_resident() - before < LARGE / 2
+
+
+def test_arrays_that_outlive_the_work_are_not_kept() -> None:
+    with reuse_pages():
+        array = create_array((LARGE,), np.uint8)
+    address = find_address(array)
+    array.fill(3)
+    with reuse_pages():
+        other = create_array((LARGE,), np.uint8)
+        assert find_address(other) != address and (array == 3).all()

@@ -17,9 +17,9 @@ from msgspec.structs import replace
 from ...compiler import FIRST_TABLE, MAX_WEIGHTS, Pass, Plan, Region, Surface, Upload
 from ...errors import HalationError, InputError, RenderError, describe_owner
 from ...resources.color_program import LookupTable
+from ...resources.large_arrays import ArrayMaker
 from ...resources.mesh import Mesh
 from ..device import Bindings, Device, DeviceProgram, DeviceResource, DeviceTexture
-from .array_pool import ArrayPool
 from .costs import PassCosts
 from .decoding import Array, DecodedPicture
 from .host_jobs import HostJob, HostJobs
@@ -164,7 +164,7 @@ class Executor:
         numbers = {name: render_pass.textures[place] for name, place in render_pass.host.pictures}
         whole = find_host_window(plan, render_pass)
         pictures = {
-            name: cut_window(self.download(plan, number, ArrayPool()), find_window(plan.surfaces[number]), whole)
+            name: cut_window(self.download(plan, number), find_window(plan.surfaces[number]), whole)
             for name, number in numbers.items()
         }
         return self._host_jobs.start(key, render_pass.host.program, pictures)
@@ -361,13 +361,16 @@ class Executor:
         assert texture is not None, f"{key} is gone before its last reader"
         return texture
 
-    def download(self, plan: Plan, number: int, arrays: ArrayPool) -> Array:
-        """The pixels of a surface as [height, width, channels], in memory that `arrays` lends."""
+    def download(self, plan: Plan, number: int, create: ArrayMaker = np.empty) -> Array:
+        """The pixels of a surface as [height, width, channels], in an array that `create` makes.
+
+        By default that is numpy's, whose allocator finds the memory of the last one.
+        """
         surface = plan.surfaces[number]
         width, height = surface.size
         self.device.finish()  # other threads go on meanwhile, and llvmpipe may read before the draws are done
         shape = (height, width, surface.components)
-        pixels = arrays.take(shape, np.float16 if surface.depth == "f2" else np.float32)
+        pixels = create(shape, np.float16 if surface.depth == "f2" else np.float32)
         self._find(surface.key).handle.read_into(pixels)
         return pixels[..., : surface.channels]
 

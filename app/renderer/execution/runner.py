@@ -7,12 +7,13 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
 from weakref import WeakValueDictionary
 
+import numpy as np
 from msgspec import Struct
 
 from ...compiler import Pass, Plan
 from ...errors import DeviceError, UsageError
+from ...resources.large_arrays import ArrayMaker
 from ..device import Device
-from .array_pool import ArrayPool
 from .decoding import Array, DecodedPicture, DecodeQueue, DecodeRequest, PictureLoader, decode_picture, limit_lookahead
 from .executor import Executor
 from .run import PassTimings, Run, WholeRun, find_needed_passes, find_needed_uploads
@@ -104,9 +105,7 @@ class Runner:
             with self.start_run(plan, lease, timings=timings) as run:
                 for render_pass in run:
                     with self.device.make_current():
-                        pixels = {
-                            number: self._executor.download(plan, number, ArrayPool()) for number in render_pass.targets
-                        }
+                        pixels = {number: self._executor.download(plan, number) for number in render_pass.targets}
                     yield PassTrace(render_pass, timings[-1][1], pixels)
         finally:
             lease.close()
@@ -126,21 +125,20 @@ class Runner:
             if surface.key not in self._leftovers:
                 self._leftovers[surface.key] = self._threads.submit(decode_picture, self._load, upload.picture)
 
-    def download(self, plan: Plan, arrays: ArrayPool | None = None) -> dict[str, Array]:
+    def download(self, plan: Plan, create: ArrayMaker = np.empty) -> dict[str, Array]:
         """The outputs of a plan that has run, while they are leased, as [height, width, channels].
 
-        They are float16 where the plan keeps halves. `arrays` lends the memory, which the caller gives back.
+        They are float16 where the plan keeps halves. `create` makes the arrays.
         """
         if plan.tiling is not None:
             return dict(self._tiled_outputs[_list_output_keys(plan)].pixels)
-        arrays = arrays or ArrayPool()
         with self.device.make_current():
-            return {name: self._executor.download(plan, number, arrays) for name, number in plan.outputs.items()}
+            return {name: self._executor.download(plan, number, create) for name, number in plan.outputs.items()}
 
-    def download_surface(self, plan: Plan, number: int, arrays: ArrayPool) -> Array:
+    def download_surface(self, plan: Plan, number: int) -> Array:
         """The pixels of a surface that has a lease."""
         with self.device.make_current():
-            return self._executor.download(plan, number, arrays)
+            return self._executor.download(plan, number)
 
     def upload(self, plan: Plan, number: int, pixels: Array, lease: TextureLease) -> None:
         """Put pixels that were computed elsewhere on the device, under the key of a surface. Raises DeviceError."""

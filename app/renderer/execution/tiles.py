@@ -14,9 +14,9 @@ from ...compiler.areas import Span
 from ...compiler.explain import format_bytes
 from ...compiler.ir import LoweredProgram
 from ...errors import DeviceError, HalationError
+from ...resources.large_arrays import ArrayMaker, create_array, reuse_pages
 from ...resources.machine import machine_memory
 from ...resources.picture import Picture
-from .array_pool import ArrayPool
 from .decoding import Array, PictureLoader
 from .run import Run, find_shared_surfaces
 from .texture_pool import TextureLease
@@ -33,8 +33,8 @@ class PlanRunner(Protocol):
         """Begin to run a plan."""
         ...
 
-    def download(self, plan: Plan, arrays: ArrayPool | None = None) -> dict[str, Array]:
-        """The outputs of a plan that has run, in memory that `arrays` lends."""
+    def download(self, plan: Plan, create: ArrayMaker = np.empty) -> dict[str, Array]:
+        """The outputs of a plan that has run, in arrays that `create` makes."""
         ...
 
     def create_lease(self) -> TextureLease:
@@ -56,7 +56,7 @@ class TiledRun(Run):
         super().__init__(plan)
         self._tiling = plan.tiling
         self._runner, self._keep_outputs = runner, keep_outputs
-        self._pictures, self._arrays = _PictureCache(load, by_rows=plan.tiling.target.memory > 0), ArrayPool()
+        self._pictures = _PictureCache(load, by_rows=plan.tiling.target.memory > 0)
         self._tile: Run | None = None
         self._passes = self._run_stages()
 
@@ -88,20 +88,21 @@ class TiledRun(Run):
         tiling = self._tiling
         row_outputs = tiling.by_rows if self.receive_rows else frozenset[str]()
         _check_memory(tiling.program, row_outputs)
-        stored: dict[int, StoredResult] = {}
-        for number, stage in enumerate(tiling.stages[: len(tiling.before)]):
-            arrays = yield from self._run_stage(stage, stored)
-            stored |= self._store_outputs(stage, arrays)
-            self._drop_unread(stored, tiling.stages[number + 1 :])
-        outputs = {
-            name: _get_pixels(stored[ref.op], ref.output)
-            for name, ref in tiling.program.outputs.items()
-            if ref.op in stored
-        }
-        for number, stage in enumerate(tiling.last, len(tiling.before)):
-            outputs |= yield from self._run_stage(stage, stored)
-            self._drop_unread(stored, tiling.stages[number + 1 :])
-        self._keep_outputs({name: outputs[name] for name in tiling.program.outputs if name not in row_outputs})
+        with reuse_pages():
+            stored: dict[int, StoredResult] = {}
+            for number, stage in enumerate(tiling.stages[: len(tiling.before)]):
+                arrays = yield from self._run_stage(stage, stored)
+                stored |= self._store_outputs(stage, arrays)
+                self._drop_unread(stored, tiling.stages[number + 1 :])
+            outputs = {
+                name: _get_pixels(stored[ref.op], ref.output)
+                for name, ref in tiling.program.outputs.items()
+                if ref.op in stored
+            }
+            for number, stage in enumerate(tiling.last, len(tiling.before)):
+                outputs |= yield from self._run_stage(stage, stored)
+                self._drop_unread(stored, tiling.stages[number + 1 :])
+            self._keep_outputs({name: outputs[name] for name in tiling.program.outputs if name not in row_outputs})
 
     def _run_stage(
         self, stage: TileStage, stored: Mapping[int, StoredResult]
@@ -125,21 +126,7 @@ class TiledRun(Run):
                         self._tile = run
                         yield from run
                     del loaded_plan
-                    tile_outputs = self._runner.download(plan, self._arrays)
-                    for name, pixels in tile_outputs.items():
-                        first = tile.y if name in row_outputs else 0
-                        if name not in pictures:
-                            height = tile.height if name in row_outputs else size[1]
-                            pictures[name] = np.empty((height, size[0], pixels.shape[2]), pixels.dtype)
-                        # Others may read more of an output than the tile.
-                        window = plan.surfaces[plan.outputs[name]].window or Region.whole(size)
-                        tile_part = Region(tile.x - window.x, tile.y - window.y, *tile.size)
-                        pictures[name][_to_slices(Region(tile.x, tile.y - first, *tile.size))] = pixels[
-                            _to_slices(tile_part)
-                        ]
-                        if name in row_outputs and self.receive_rows and tile.across[1] == size[0]:
-                            self.receive_rows(name, first, pictures.pop(name))
-                    self._arrays.give(tile_outputs.values())
+                    self._place_outputs(plan, tile, size, row_outputs, pictures)
                     for surface in plan.outputs.values():
                         if surface not in shared:
                             tile_lease.release(plan.surfaces[surface].key)
@@ -150,6 +137,23 @@ class TiledRun(Run):
         finally:
             before.close()
         return pictures
+
+    def _place_outputs(
+        self, plan: Plan, tile: Region, size: Size, row_outputs: frozenset[str], pictures: dict[str, Array]
+    ) -> None:
+        """Put the outputs of a tile into whole pictures, and hand over those of `row_outputs` whose rows are done."""
+        for name, pixels in self._runner.download(plan, create_array).items():
+            first = tile.y if name in row_outputs else 0
+            if name not in pictures:
+                height = tile.height if name in row_outputs else size[1]
+                pictures[name] = np.empty((height, size[0], pixels.shape[2]), pixels.dtype)
+            # Others may read more of an output than the tile.
+            window = plan.surfaces[plan.outputs[name]].window or Region.whole(size)
+            tile_part = Region(tile.x - window.x, tile.y - window.y, *tile.size)
+            place = _to_slices(Region(tile.x, tile.y - first, *tile.size))
+            pictures[name][place] = pixels[_to_slices(tile_part)]
+            if name in row_outputs and self.receive_rows and tile.across[1] == size[0]:
+                self.receive_rows(name, first, pictures.pop(name))
 
     def _load_pictures(self, plan: Plan) -> Plan:
         """The same plan with the pixels of its uploads."""

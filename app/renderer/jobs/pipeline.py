@@ -12,9 +12,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import nullcontext
 
 from ...errors import HalationError
 from ...graph import Graph
+from ...resources.large_arrays import create_array, reuse_pages
 from ..engine import Renderer
 from ..execution.decoding import Array
 from ..execution.texture_pool import TextureLease
@@ -80,13 +82,14 @@ class FramePipeline:
         if task is not None:
             self._renderer.runner.start_decoding(task.plan)
         following = next(tasks, None)
-        while task is not None:
-            passes = self._try_render(task, following)
-            task_after = next(tasks, None)  # while the device is busy
-            if passes is not None:
-                self._try_write(task, *passes, is_last=following is None)
-            self._close_sessions_before(task.session)
-            task, following = following, task_after
+        with reuse_pages() if following else nullcontext():
+            while task is not None:
+                passes = self._try_render(task, following)
+                task_after = next(tasks, None)  # while the device is busy
+                if passes is not None:
+                    self._try_write(task, *passes, is_last=following is None)
+                self._close_sessions_before(task.session)
+                task, following = following, task_after
         for written_frame in self._write_queue.collect_all():
             self._finish_write(*written_frame)
 
@@ -253,7 +256,7 @@ class FramePipeline:
         started = time.perf_counter()
         if is_last:
             self._renderer.runner.release_unused()
-        outputs = self._renderer.runner.download(task.plan, self._write_queue.arrays)
+        outputs = self._renderer.runner.download(task.plan, create_array)
         lease.close()
         self.seconds["render"] += time.perf_counter() - started
         return outputs

@@ -31,7 +31,6 @@ from ...errors import OutputError, UsageError
 from ...graph import Port
 from ...resources.atomic_write import describe_write_error, replace_file
 from ...resources.sandbox import Sandbox
-from ..execution.array_pool import ArrayPool
 from ..execution.decoding import Array
 from ..execution.run import find_needed_passes
 from ..execution.runner import Runner
@@ -92,7 +91,7 @@ class SharedResults:
             names.append(name)
             if name in self._names:
                 continue
-            pixels = runner.download_surface(plan, number, ArrayPool())
+            pixels = runner.download_surface(plan, number)
             with replace_file(self._folder / name, self._sandbox) as replacement:
                 np.ascontiguousarray(pixels).tofile(replacement.temporary)
                 replacement.commit(durable=False)

@@ -8,8 +8,6 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Generic, TypeVar
 
 from ...resources.interrupts import delay_interrupts
-from ...resources.large_arrays import create_array
-from ..execution.array_pool import ArrayPool
 from ..execution.decoding import Array
 
 MAX_WAITING = 1
@@ -23,29 +21,18 @@ WriteResult = TypeVar("WriteResult")
 
 
 class WriteQueue(Generic[WriteResult]):
-    """Writes frames on `writers` other threads; a single one writes them in order.
-
-    `arrays` lends the memory of their pixels.
-    """
+    """Writes frames on `writers` other threads; a single one writes them in order."""
 
     def __init__(self, writers: int = 1) -> None:
-        self.arrays = ArrayPool(create_array)
         self._most = writers + MAX_WAITING
         self._writer = ThreadPoolExecutor(writers, thread_name_prefix="write")
         self._writes: deque[tuple[Future[WriteResult], int]] = deque()
 
     def submit(self, write: Callable[[Mapping[str, Array]], WriteResult], outputs: Mapping[str, Array]) -> None:
-        """Call `write` with these outputs on another thread, then give their memory back to `arrays`."""
-
-        def work() -> WriteResult:
-            try:
-                return write(outputs)
-            finally:
-                self.arrays.give(outputs.values())
-
+        """Call `write` with these outputs on another thread."""
         # An interrupt while the thread is started would leave one that nobody waits for.
         with delay_interrupts():
-            self._writes.append((self._writer.submit(work), sum(array.nbytes for array in outputs.values())))
+            self._writes.append((self._writer.submit(write, outputs), sum(array.nbytes for array in outputs.values())))
 
     def collect_finished(self) -> Iterator[WriteResult]:
         """The results of finished writes; waits while too many are unfinished. Raises what they raised."""
