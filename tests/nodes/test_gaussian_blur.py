@@ -7,6 +7,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from exr_files import write_exr
 from halation.graph import Graph, Input, Output, Port
 from halation.nodes import Kind
 from halation.nodes.blur.gaussian_blur import GaussianBlur
@@ -207,6 +208,22 @@ def test_a_hole_is_skipped(run, hdr, sigma, hole):
     patched[20, 22] = 0.0
     found = run(GaussianBlur(sigma=sigma), {"image": picture})
     np.testing.assert_array_equal(found, run(GaussianBlur(sigma=sigma), {"image": patched}))
+
+
+@pytest.mark.parametrize("sigma", [0.5, 3.0, 20.0])
+@pytest.mark.parametrize(("format", "large"), [("float", 3.4e38), ("half", 65504.0)])
+def test_large_numbers_of_files_are_skipped_if_their_sum_may_be_infinite(renderer, tmp_path, hdr, sigma, format, large):
+    """A file has no holes, but may have numbers that no mean can be made of; halves are all small enough."""
+    picture = hdr(45, 39).astype(np.float16).astype(np.float32)
+    picture[20:23, 22:30] = large
+    expected = picture.copy()
+    expected[20:23, 22:30] = 0.0 if large > 2.0**127 else large
+    path = write_exr(tmp_path / "picture.exr", {"Combined": picture}, {"Combined": format})
+    graph = Graph().add("blur", GaussianBlur(sigma=sigma)).add_input("image", Input(Kind.IMAGE, color_space="data"))
+    graph = graph.add_output("out", Output(Kind.IMAGE)).connect(Port("blur", "out"), Port("outputs", "out"))
+    graph = graph.connect(Port("inputs", "image"), Port("blur", "image"))
+    found, patched = (renderer.render(graph, RenderRequest({"image": item}))["out"] for item in (str(path), expected))
+    np.testing.assert_array_equal(found, patched)
 
 
 @pytest.mark.parametrize("sigma", [0.5, 3.0, 20.0, 80.0])

@@ -10,6 +10,7 @@ import pytest
 from halation.custom_nodes import Code, node_type
 from halation.graph import Graph, Input, Output, Port
 from halation.nodes import Kind
+from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.renderer import Renderer, RenderRequest
 
 CROSS = "image_at(pixel) + image_at(pixel + ivec2(1, 0)) + image_at(pixel - ivec2(1, 0))"
@@ -75,3 +76,21 @@ def test_data_that_is_shown_as_color_keeps_its_infinity(renderer: Renderer, tmp_
     wanted = add_neighbors(np.where(np.isfinite(depth), depth, 0.0))
     usual = np.abs(wanted) < 1e30
     assert drawn[usual] == pytest.approx(wanted[usual], rel=1e-5, abs=1e-5)
+
+
+@pytest.mark.parametrize("sigma", [2.0, 20.0])
+def test_what_code_makes_has_holes_that_no_blur_spreads(renderer: Renderer, tmp_path: Path, sigma: float) -> None:
+    """Sums of three may be infinite, or larger than a blur can add up."""
+    array = write(tmp_path / "a.exr", ("R", "G", "B", "A"))
+    made = renderer.render(make_graph(COLOR, Kind.IMAGE, 4), RenderRequest({"image": array}))["out"]
+    is_hole = ~(np.abs(made) < 2.0**127).all(axis=2)
+    assert 0 < is_hole.sum() < 10
+    blur = Graph().add_input("image", Input(Kind.IMAGE)).add("blur", GaussianBlur(sigma=sigma))
+    both = make_graph(COLOR, Kind.IMAGE, 4).add("blur", GaussianBlur(sigma=sigma))
+    both = both.connect(Port("user", "out"), Port("blur", "image")).connect(Port("blur", "out"), Port("outputs", "out"))
+    blur = blur.connect(Port("inputs", "image"), Port("blur", "image")).add_output("out", Output(Kind.IMAGE))
+    blur = blur.connect(Port("blur", "out"), Port("outputs", "out"))
+    drawn = renderer.render(both, RenderRequest({"image": array}))["out"]
+    made[is_hole] = 0.0
+    np.testing.assert_array_equal(drawn, renderer.render(blur, RenderRequest({"image": made}))["out"])
+    assert np.isfinite(drawn).all()
