@@ -35,9 +35,9 @@ def write_accessor(
     int. Means take no number whose double is infinite, so that no sum on the way to one is, and their readers need no
     test for holes.
     """
-    name, glsl, edge, has, is_whole = item.name, item.glsl, reader.edge, "true", False
+    name, glsl, edge, has, has_no_holes = item.name, item.glsl, reader.edge, "true", False
     if isinstance(item.operand, Ref):
-        is_whole = names.program.is_whole(reader, item.operand, names.by_image)
+        has_no_holes = names.program.has_no_holes(reader, item.operand, names.by_image)
         names.uniform("ivec2", names.program.shape(item.operand).size, f"{name}_size")
         extent, has = names.program.extents.get(item.operand), f"inside(p, {name}_size)"
         if extent and edge in ("clamp", "black"):
@@ -59,7 +59,7 @@ def write_accessor(
         *([f"bool {name}_has(ivec2 p) {{ return {has}; }}"] if f"{name}_has" in used_words else []),
         f"{glsl} {name}_raw(ivec2 p) {{ return {value}; }}",
         f"{glsl} {name}_at(ivec2 p) {{ return {name}_raw(p); }}"
-        if is_whole
+        if has_no_holes
         else f"{glsl} {name}_at(ivec2 p) {{ {glsl} c = {name}_raw(p); return is_hole({tested}) ? {glsl}(0.0) : c; }}",
         f"{glsl} {name}_near(vec2 p) {{",
         "    p = clamp(p, -16777216.0, 16777216.0) - 0.5;",

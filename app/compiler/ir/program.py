@@ -84,7 +84,7 @@ class LoweredProgram(Struct, frozen=True):
             return self.find_first_decimation(before)
         return op
 
-    def is_whole(self, reader: Op, picture: Ref, by_image: bool) -> bool:
+    def has_no_holes(self, reader: Op, picture: Ref, by_image: bool) -> bool:
         """Whether a picture has no hole for an operation that reads it anywhere: neither NaN nor infinity, nor, for one
         that averages, a number that is too large. What is known of files counts only where they are read as images.
 

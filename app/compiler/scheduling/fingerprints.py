@@ -65,7 +65,7 @@ class PassFingerprints:
             op = ops[index]
             parts.append(self._describe(index, op))
             for ref in op.reads():
-                parts += [places[ref], self._program.is_whole(op, ref, self._target.loads_images)]
+                parts += [places[ref], self._program.has_no_holes(op, ref, self._target.loads_images)]
             for output in range(op.outputs):
                 places[Ref(index, output)] = len(places)
         target, root = self._target, ops[group.root]
