@@ -12,10 +12,10 @@ from __future__ import annotations
 
 import mmap
 import sys
-from collections import deque
 from collections.abc import Callable, Generator
 from contextlib import contextmanager, suppress
 from math import prod
+from threading import RLock
 from typing import Any
 from weakref import finalize
 
@@ -28,6 +28,9 @@ MAX_SPARE = 4
 """Pages of so many arrays are kept for others: of a sequence, three frames that are written or downloaded, and one that
 is decoded. More would hardly be used, and take memory."""
 
+MAX_SPARE_BYTES = 2**28
+"""Bytes of all of these together: as many as frames take that wait to be written."""
+
 ArrayMaker = Callable[[tuple[int, ...], type[np.floating[Any]]], np.ndarray]
 """Makes an array of a shape and type with undefined numbers."""
 
@@ -37,25 +40,27 @@ class _SparePages:
 
     def __init__(self) -> None:
         self.users = 0
-        self._pages: deque[mmap.mmap] = deque(maxlen=MAX_SPARE)
+        self._pages: list[mmap.mmap] = []
+        self._lock = RLock()  # an array that dies while it is held gives its pages
 
     def take(self, nbytes: int) -> mmap.mmap | None:
-        for _ in range(len(self._pages)):
-            try:
-                pages = self._pages.popleft()
-            except IndexError:  # another thread took the last
-                return None
-            if len(pages) == nbytes:
-                return pages
-            self._pages.append(pages)
-        return None
+        with self._lock:
+            place = next((place for place, pages in enumerate(self._pages) if len(pages) == nbytes), None)
+            return None if place is None else self._pages.pop(place)
 
     def give(self, pages: mmap.mmap) -> None:
-        if self.users:
-            self._pages.append(pages)
+        with self._lock:
+            if self.users and len(pages) <= MAX_SPARE_BYTES:
+                self._pages.append(pages)
+                while len(self._pages) > MAX_SPARE or sum(map(len, self._pages)) > MAX_SPARE_BYTES:
+                    del self._pages[0]
 
-    def clear(self) -> None:
-        self._pages.clear()
+    def add_users(self, change: int) -> None:
+        """There are more or fewer who want pages to be kept. Without any, none are."""
+        with self._lock:
+            self.users += change
+            if not self.users:
+                self._pages.clear()
 
 
 _SPARE = _SparePages()
@@ -78,13 +83,11 @@ def create_array(shape: tuple[int, ...], dtype: np.dtype[Any] | type[np.generic]
 @contextmanager
 def reuse_pages() -> Generator[None]:
     """Keep pages of arrays that nothing refers to any more for the next ones of their size, until this ends."""
-    _SPARE.users += 1
+    _SPARE.add_users(1)
     try:
         yield
     finally:
-        _SPARE.users -= 1
-        if not _SPARE.users:
-            _SPARE.clear()
+        _SPARE.add_users(-1)
 
 
 def _create_pages(nbytes: int) -> mmap.mmap:

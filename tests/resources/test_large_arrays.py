@@ -6,6 +6,7 @@ import sys
 
 import numpy as np
 import pytest
+from halation.resources import large_arrays
 from halation.resources.large_arrays import LARGE, MAX_SPARE, create_array, reuse_pages
 from resident import count_resident, needs_proc
 
@@ -84,3 +85,14 @@ def test_arrays_that_outlive_the_work_are_not_kept() -> None:
     with reuse_pages():
         other = create_array((LARGE,), np.uint8)
         assert find_address(other) != address and (array == 3).all()
+
+
+def test_only_so_many_bytes_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(large_arrays, "MAX_SPARE_BYTES", 3 * LARGE)
+    created, create = list[int](), large_arrays._create_pages
+    monkeypatch.setattr(large_arrays, "_create_pages", lambda nbytes: created.append(nbytes) or create(nbytes))
+    with reuse_pages():
+        for nbytes in (LARGE, 2 * LARGE, LARGE, 4 * LARGE, 2 * LARGE, LARGE, 3 * LARGE, LARGE):
+            create_array((nbytes,), np.uint8)
+    # Both sizes are kept together. More than all is not kept at all, and as much as all in place of the others.
+    assert created == [size * LARGE for size in (1, 2, 4, 3, 1)]
