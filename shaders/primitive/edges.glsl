@@ -31,3 +31,9 @@ bool is_hole(float c) { return (floatBitsToUint(c) & 0x7fffffffu) >= 0x7f800000u
 bool is_hole(vec2 c) { return is_hole(c.x) || is_hole(c.y); }
 bool is_hole(vec3 c) { return is_hole(c.xy) || is_hole(c.z); }
 bool is_hole(vec4 c) { return is_hole(c.xy) || is_hole(c.zw); }
+
+// True for what no mean can be made of: holes, and numbers from 2^127 on, of which two may add up to infinity.
+bool is_too_large(float c) { return (floatBitsToUint(c) & 0x7fffffffu) >= 0x7f000000u; }
+bool is_too_large(vec2 c) { return is_too_large(c.x) || is_too_large(c.y); }
+bool is_too_large(vec3 c) { return is_too_large(c.xy) || is_too_large(c.z); }
+bool is_too_large(vec4 c) { return is_too_large(c.xy) || is_too_large(c.zw); }

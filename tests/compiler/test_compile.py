@@ -59,16 +59,11 @@ def test_decimations_share_a_program_that_is_compiled_for_the_first(plan):
         assert ("for (" in first) == (size == (320, 200))
 
 
-def test_only_what_shrinks_a_picture_for_a_blur_looks_for_holes(plan):
+def test_what_enlarges_a_blur_again_looks_for_no_holes(plan):
     made = plan(chain(GaussianBlur(sigma=50.0)), target=replace(NULL, form="compute"))
-    tested = {one.functions[0]: "? vec4(0.0) : c" in one.shader.source for one in made.passes}
-    assert tested == {
-        "decimate x": True,
-        "decimate y": True,
-        "convolve x": False,
-        "convolve y": False,
-        "enlarge": False,
-    }
+    tested = {one.functions[0]: "(c) ? vec4(0.0) : c" in one.shader.source for one in made.passes}
+    convolutions = {f"{name} {axis}": True for name in ("decimate", "convolve") for axis in "xy"}
+    assert tested == {**convolutions, "enlarge": False}
 
 
 def test_what_is_wanted_in_between_is_written_on_the_way(plan):

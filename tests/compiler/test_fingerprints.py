@@ -9,7 +9,7 @@ from halation.compiler import NULL, Library, Request, load_library
 from halation.compiler.codegen.emit import emit
 from halation.compiler.fusion.fuse import fuse
 from halation.compiler.fusion.rewrites import rewrite_passes
-from halation.compiler.ir import ExternalProgram, Raster
+from halation.compiler.ir import ExternalProgram, HostCall, Raster
 from halation.compiler.lowering.lower import lower
 from halation.compiler.scheduling.fingerprints import PassFingerprints
 from halation.compiler.scheduling.schedule import choose_formats
@@ -50,9 +50,13 @@ def told(graph: Graph, target=NULL, library: Library | None = None, frame: int =
         for one, mark in fingerprints.of(fused):
             root = program.ops[one.root]
             alone = whole if one is fused else emit(program, one, library, target, texels)
-            drawn = (
-                root.mesh.digest if isinstance(root, Raster) else root.text if isinstance(root, ExternalProgram) else ""
-            )
+            drawn: object = ""
+            if isinstance(root, Raster):
+                drawn = root.mesh.digest
+            elif isinstance(root, ExternalProgram):
+                drawn = root.text
+            elif isinstance(root, HostCall):  # its text does not say which picture is which, and how large
+                drawn = [(one.reads.index(ref), program.shape(ref)) for ref in root.reads()]
             stored = tuple(texels[ref] for ref in (*one.reads, *one.writes))
             found.setdefault(mark, set()).add(repr((alone.shader, alone.uniforms, alone.weights, drawn, stored)))
     return found

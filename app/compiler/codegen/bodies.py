@@ -32,8 +32,7 @@ def write_accessor(
     """`<name>_size`, `<name>_raw`, `<name>_at` and `<name>_near` for one picture; `<name>_has` if that word is used.
 
     Places are limited to 2^24, up to which floats count single pixels: GLSL leaves open what a larger float is as an
-    int. Means take no number whose double is infinite, so that no sum on the way to one is, and their readers need no
-    test for holes.
+    int. Means take no number that is too large to be added up, so that what reads them needs no test for holes.
     """
     name, glsl, edge, has, has_no_holes = item.name, item.glsl, reader.edge, "true", False
     if isinstance(item.operand, Ref):
@@ -54,13 +53,13 @@ def write_accessor(
     else:
         names.uniform("ivec2", (1, 1), f"{name}_size")
         value = names.constant(item.operand, glsl)
-    tested = "2.0 * c" if reader.averages else "c"
+    test = "is_too_large" if reader.averages else "is_hole"
     return [
         *([f"bool {name}_has(ivec2 p) {{ return {has}; }}"] if f"{name}_has" in used_words else []),
         f"{glsl} {name}_raw(ivec2 p) {{ return {value}; }}",
         f"{glsl} {name}_at(ivec2 p) {{ return {name}_raw(p); }}"
         if has_no_holes
-        else f"{glsl} {name}_at(ivec2 p) {{ {glsl} c = {name}_raw(p); return is_hole({tested}) ? {glsl}(0.0) : c; }}",
+        else f"{glsl} {name}_at(ivec2 p) {{ {glsl} c = {name}_raw(p); return {test}(c) ? {glsl}(0.0) : c; }}",
         f"{glsl} {name}_near(vec2 p) {{",
         "    p = clamp(p, -16777216.0, 16777216.0) - 0.5;",
         "    vec2 corner = floor(p), t = p - corner;",

@@ -47,7 +47,7 @@ class PassContext(Struct, frozen=True):
 
     def is_small_decimation(self, op: Convolve) -> bool:
         """Whether a decimation has so few pixels, and the first of its kind, which has compiled the program of all."""
-        first = self.program.find_first_decimation(op)
+        first = self.program.find_first_convolution(op)
         sizes = first.size, self.program.size_on_device(first.image)
         return all(width * height <= bodies.SMALL_PIXELS for width, height in sizes)
 

@@ -75,30 +75,28 @@ class LoweredProgram(Struct, frozen=True):
     windows: Mapping[Ref, Region] = field(default_factory=lambda: MappingProxyType({}))
     """The parts of pictures that are made or read, of those that are not whole on the device."""
 
-    def find_first_decimation(self, op: Convolve) -> Convolve:
-        """The first of the decimations by the same factor that follow each other and end in this one. All of them run
+    def find_first_convolution(self, op: Convolve) -> Convolve:
+        """The first of the convolutions by the same stride that follow each other and end in this one. All of them run
         the program that is compiled for the first.
         """
         before = self.ops[op.image.op]
-        if isinstance(before, Convolve) and before.stride == op.stride > 1:
-            return self.find_first_decimation(before)
+        if isinstance(before, Convolve) and before.stride == op.stride:
+            return self.find_first_convolution(before)
         return op
 
     def has_no_holes(self, reader: Op, picture: Ref, by_image: bool) -> bool:
-        """Whether a picture has no hole for an operation that reads it anywhere: neither NaN nor infinity, nor, for one
-        that averages, a number that is too large. What is known of files counts only where they are read as images.
+        """Whether a picture is known to have no hole for an operation that reads it anywhere: neither NaN nor infinity,
+        nor, for one that averages, a number that is too large. What is known of files counts only where they are read
+        as images.
 
-        All decimations that run one program read as the first of them must.
+        Convolutions test all other pictures, also where it is not needed: else there were more programs to compile.
         """
-        if isinstance(reader, Convolve):
-            reader = self.find_first_decimation(reader)
-            picture = reader.image
         if not isinstance(reader, Convolve | Gather):
             return False
-        made_by = self.ops[picture.op]
+        made_by = self.ops[(self.find_first_convolution(reader).image if isinstance(reader, Convolve) else picture).op]
         if isinstance(made_by, Read):
             return by_image and made_by.finite and (made_by.half or not reader.averages)
-        return isinstance(made_by, Convolve | Gather) and made_by.averages
+        return isinstance(reader, Gather) and isinstance(made_by, Convolve | Gather) and made_by.averages
 
     @property
     def kept_refs(self) -> tuple[Ref, ...]:

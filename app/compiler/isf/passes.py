@@ -21,7 +21,13 @@ _DEFINED = re.compile(r"\bstruct\s+(\w+)|^[ \t]*#[ \t]*define[ \t]+(\w+)", re.MU
 _CONSTANTS = re.compile(r"^const\s+\w+\s+([^;]*);", re.MULTILINE)
 _CONSTANT = re.compile(r"(?:^|,)\s*(\w+)(?:\[[^\]]*\])?\s*=")
 _FUNCTION = re.compile(r"^[ \t]*(?:float|int|bool|[iu]?vec[234]|mat3|void)[ \t]+(\w+)[ \t]*\(", re.MULTILINE)
-_BITS = re.compile(r"bool (is_hole|is_finite)\(float (\w)\) \{[^}]*\}")
+_BITS = re.compile(r"bool (is_hole|is_too_large|is_finite)\(float (\w)\) \{[^}]*\}")
+_SIZES = {
+    "is_hole": "!(abs({}) <= 3.4e38)",
+    "is_too_large": "!(abs({}) < 1.7014118e38)",
+    "is_finite": "abs({}) <= 3.4e38",
+}
+"""The same functions without bits."""
 _FINITE = re.compile(r"float finite\(float x\) \{.*?\n\}", re.DOTALL)
 _GLOBALS = ("pixel", "extent", "grid", "frame", "proxy")
 
@@ -160,11 +166,7 @@ def _make_portable(body: str) -> str:
     """The text without the bits of floats, and a word, that older GLSL does not know."""
     body = re.sub(r"\bprecise\s+", "", body)
     body = _BITS.sub(
-        lambda match: (
-            f"bool {match[1]}(float {match[2]}) {{ return "
-            f"{'!' if match[1] == 'is_hole' else ''}(abs({match[2]}) <= 3.4e38); }}"
-        ),
-        body,
+        lambda match: f"bool {match[1]}(float {match[2]}) {{ return {_SIZES[match[1]].format(match[2])}; }}", body
     )
     return _FINITE.sub(
         "float finite(float x) { return abs(x) <= 3.4e38 ? x : x > 0.0 ? 65504.0 : x < 0.0 ? -65504.0 : 0.0; }", body
