@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from typing import get_args
 
 import pytest
 from halation.compiler import NULL, explain, write_dot
+from halation.compiler.ir import Builder, Convolve, PictureShape, Reduce, Ref
 from halation.errors import GraphError
 from halation.graph import Control, Graph, Group, Input, Output, Port, Settings
-from halation.nodes import Kind, catalogue
+from halation.nodes import Edge, Kind, catalogue
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.color.saturation import Saturation
@@ -64,6 +66,19 @@ def test_what_enlarges_a_blur_again_looks_for_no_holes(plan):
     tested = {one.functions[0]: "(c) ? vec4(0.0) : c" in one.shader.source for one in made.passes}
     convolutions = {f"{name} {axis}": True for name in ("decimate", "convolve") for axis in "xy"}
     assert tested == {**convolutions, "enlarge": False}
+
+
+def test_a_picture_of_one_pixel_goes_on_alike_in_all_ways_but_into_black():
+    builder, shapes = Builder(), (PictureShape((1, 1), 4, False), PictureShape((2, 1), 4, False))
+    dot, row = (builder.add(Reduce((shape,), "n", Ref(0), "sum")) for shape in shapes)
+
+    def blur(picture: Ref, edge: Edge) -> Ref:
+        return builder.add(Convolve((shapes[1],), "n", picture, 0, (0.5, 0.5), 1, 0, edge))
+
+    edges = frozenset[Edge](get_args(Edge))
+    assert len({blur(dot, edge) for edge in edges - {"black"}}) == 1
+    assert blur(dot, "black") not in {blur(dot, edge) for edge in edges - {"black"}}
+    assert len({blur(row, edge) for edge in edges}) == len(edges) > 4
 
 
 def test_what_is_wanted_in_between_is_written_on_the_way(plan):
