@@ -37,6 +37,10 @@ class Target(Record, frozen=True):
         """True if compute passes read through image units: a third of a sampler's cost on the software rasterizer."""
         return self.form == "compute" and self.software
 
+    def has_images_for(self, pictures: int) -> bool:
+        """True if a pass that reads and writes so many pictures reads them through image units: if there are enough."""
+        return self.loads_images and pictures <= self.max_images
+
     @property
     def rounds_halves(self) -> bool:
         """True if passes round to half floats in GLSL, as the processor does: to nearest even, and NaN stays."""

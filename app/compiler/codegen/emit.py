@@ -59,7 +59,7 @@ def _emit_root(root: Op, request: _PassRequest) -> EmittedProgram:
     Uniforms are named as the text asks for them, so the parts are written before the declarations that precede them.
     """
     program, group, target, formats = request.program, request.group, request.target, request.formats
-    by_image = target.loads_images and len(group.reads) + len(group.writes) <= target.max_images
+    by_image = target.has_images_for(len(group.reads) + len(group.writes))
     names = ShaderNames(program, {ref: number for number, ref in enumerate(group.reads)}, target.form, by_image)
     _name_windows(names, group)
     context = PassContext(program, group, names, request.library)

@@ -12,7 +12,7 @@ from .fuse import MAX_MEMBERS, MAX_UNIFORMS, PassGroup, count_tables
 def fits(program: LoweredProgram, group: PassGroup, target: Target) -> bool:
     """True if a pass of pointwise operations is within the limits of a device, and can still load from images."""
     reads, writes = len(group.reads), len(group.writes)
-    if target.loads_images and reads + writes > target.max_images:
+    if target.loads_images and not target.has_images_for(reads + writes):
         return False
     most = target.max_images if target.form == "compute" else target.max_targets
     return (

@@ -59,16 +59,17 @@ class PassFingerprints:
 
     def _fingerprint(self, group: PassGroup) -> str:
         """Pictures are told apart by their place: first those that the pass reads, then what it makes, in order."""
-        ops, parts = self._program.ops, list[object]()
+        ops, parts, target = self._program.ops, list[object](), self._target
+        by_image = target.has_images_for(len(group.reads) + len(group.writes))
         places = {ref: number for number, ref in enumerate(group.reads)}
         for index in group.members:
             op = ops[index]
             parts.append(self._describe(index, op))
             for ref in op.reads():
-                parts += [places[ref], self._program.has_no_holes(op, ref, self._target.loads_images)]
+                parts += [places[ref], self._program.has_no_holes(op, ref, by_image)]
             for output in range(op.outputs):
                 places[Ref(index, output)] = len(places)
-        target, root = self._target, ops[group.root]
+        root = ops[group.root]
         form = "fragment" if root.is_fragment_only else target.form
         written = [places[ref] for ref in group.writes]
         textures = self._describe_textures((*group.reads, *group.writes))
