@@ -19,14 +19,16 @@ from halation.cli.head_start import begin_early
 first = os.getpid()
 code = begin_early(sys.argv[1:])
 if code is not None:
-    print("watched", code)
+    print("watched", code, flush=True)
 elif os.getpid() != first:
     print("copy", "typer" in sys.modules, os.getppid() == first, flush=True)
     os._exit(7)
 else:
-    print("alone", "halation.renderer.opengl.warming" in sys.modules)
+    print("alone", "halation.renderer.opengl.warming" in sys.modules, flush=True)
+os._exit(0)
 """
-"""Prints who goes on, and whether the driver is being loaded."""
+"""Prints who goes on, and whether the driver is being loaded. It ends at once, as the command line does: an ordinary
+end takes libraries apart, and LLVM, if it is being loaded on a thread meanwhile, may never come back."""
 
 
 NO_PROCESSES = """
