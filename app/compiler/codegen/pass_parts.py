@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import singledispatch
 
-from halation.nodes import glsl_type
+from halation.nodes import Size, glsl_type
 from msgspec import Struct, structs
 
 from ...glsl import GlslText
@@ -42,19 +42,21 @@ class PassContext(Struct, frozen=True):
     @property
     def is_small(self) -> bool:
         """Whether its pictures have so few pixels that a form is better that compiles fast."""
-        sizes = map(self.program.size_on_device, (*self.group.reads, *self.group.writes))
-        return all(width * height <= bodies.SMALL_PIXELS for width, height in sizes)
+        return _are_small(map(self.program.size_on_device, (*self.group.reads, *self.group.writes)))
 
     def is_small_decimation(self, op: Convolve) -> bool:
         """Whether a decimation has so few pixels, and the first of its kind, which has compiled the program of all."""
         first = self.program.find_first_convolution(op)
-        sizes = first.size, self.program.size_on_device(first.image)
-        return all(width * height <= bodies.SMALL_PIXELS for width, height in sizes)
+        return _are_small((first.size, self.program.size_on_device(first.image)))
 
     @property
     def functions(self) -> list[FunctionOp]:
         """The members that call functions of files."""
         return [op for op in self.members if isinstance(op, FunctionOp)]
+
+
+def _are_small(sizes: Iterable[Size]) -> bool:
+    return all(width * height <= bodies.SMALL_PIXELS for width, height in sizes)
 
 
 class InlinedGather(Struct, frozen=True):

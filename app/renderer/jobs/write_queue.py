@@ -28,11 +28,21 @@ class WriteQueue(Generic[WriteResult]):
         self._writer = ThreadPoolExecutor(writers, thread_name_prefix="write")
         self._writes: deque[tuple[Future[WriteResult], int]] = deque()
 
-    def submit(self, write: Callable[[Mapping[str, Array]], WriteResult], outputs: Mapping[str, Array]) -> None:
-        """Call `write` with these outputs on another thread."""
+    def submit(self, write: Callable[[Mapping[str, Array]], WriteResult], outputs: dict[str, Array]) -> None:
+        """Call `write` with these outputs on another thread. They are empty afterwards: the next frame needs the memory
+        as soon as this one is known to be written.
+        """
+        nbytes = sum(array.nbytes for array in outputs.values())
+
+        def work() -> WriteResult:
+            try:
+                return write(outputs)
+            finally:
+                outputs.clear()
+
         # An interrupt while the thread is started would leave one that nobody waits for.
         with delay_interrupts():
-            self._writes.append((self._writer.submit(write, outputs), sum(array.nbytes for array in outputs.values())))
+            self._writes.append((self._writer.submit(work), nbytes))
 
     def collect_finished(self) -> Iterator[WriteResult]:
         """The results of finished writes; waits while too many are unfinished. Raises what they raised."""
