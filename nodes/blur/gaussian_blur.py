@@ -6,7 +6,7 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Slid
 class GaussianBlur(Filter):
     """Blur with a Gaussian, equally in all directions or differently in x and y. The cost hardly grows with sigma.
 
-    The result is within 1e-5 of scipy's gaussian_filter below a sigma of 7 pixels, and within 3e-4 (RMS) above it.
+    The result is within 1e-5 of scipy's gaussian_filter below a sigma of 4 pixels, and within 3e-4 (RMS) above it.
     """
 
     aliases = ("blur", "soften", "smooth", "fast blur", "low pass", "feather", "edge blur", "out of focus")

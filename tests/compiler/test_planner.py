@@ -198,7 +198,7 @@ def test_a_control_of_a_group_is_turned(again):
 def test_frames_of_what_moves_are_planned_in_turn(again):
     graph = chain(Exposure(stops=1.0), GaussianBlur(sigma=3.0), Saturation(saturation=0.5))
     graph = graph.animate(Port("a", "stops"), Expression("0.1 * frame"))
-    graph = graph.animate(Port("b", "sigma"), Keys((Key(1.0, 3.0), Key(9.0, 5.0))))
+    graph = graph.animate(Port("b", "sigma"), Keys((Key(1.0, 3.0), Key(9.0, 4.0))))
     planner, _ = first(graph)
     for frame in (2, 3, 9, 1):
         again(planner, graph, frame)

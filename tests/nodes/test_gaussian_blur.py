@@ -15,7 +15,13 @@ from halation.renderer import RenderRequest
 from scipy.ndimage import correlate1d, gaussian_filter
 from selection import list_cases
 
-LARGE = (7.0, 8.0, 11.3, 20.0, 50.0, 100.0)
+PEAKS = {4.2: 3.5e-4, 5.0: 2e-4, 7.0: 2e-4, 8.3: 7e-4, 11.3: 2e-4, 20.0: 3.5e-4, 50.0: 2e-4, 100.0: 2e-4}
+"""Sigma of a blur that decimates -> the largest error of a single pixel, relative to what its peak becomes."""
+
+LARGE = tuple(PEAKS)
+
+DIRECT = 4.1
+"""Sigmas up to this are convolved directly."""
 
 
 def blurred(
@@ -33,7 +39,7 @@ def impulse(width: int, height: int, x: int, y: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize("size", [(64, 48), (33, 17), (7, 5), (1, 9), (1, 1)])
-@pytest.mark.parametrize("sigma", [1.0, 2.5, 6.9])
+@pytest.mark.parametrize("sigma", [1.0, 2.5, 4.0])
 def test_small_sigmas_equal_scipy(run, hdr, edge, sigma, size):
     picture = hdr(*size)
     expected = blurred(picture, sigma, edge.scipy, truncate=4.0)
@@ -55,7 +61,7 @@ def test_sigmas_below_a_pixel_integrate_the_gaussian(run, hdr, edge, sigma):
     np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-4 * float(expected.max()))
 
 
-@pytest.mark.parametrize("sigma", [7.0, 20.0, 60.0])
+@pytest.mark.parametrize("sigma", [4.2, 5.0, 7.0, 20.0, 60.0])
 @pytest.mark.parametrize("size", [(161, 97), (40, 333), (1, 50), (1, 1)])
 def test_large_sigmas_equal_scipy(run, hdr, edge, sigma, size):
     picture = hdr(*size)
@@ -91,10 +97,10 @@ def test_edges_are_right_however_far_it_reaches(run, hdr, edge, sigma, size):
 def test_each_direction_has_its_own_sigma(run, hdr, edge, sigma, scale):
     picture = hdr(71, 48)
     sigmas = (sigma * scale[0], sigma * scale[1])
-    expected = blurred(picture, sigmas, edge.scipy, truncate=4.0 if sigma < 7.0 else 6.0)
+    expected = blurred(picture, sigmas, edge.scipy, truncate=4.0 if sigma < DIRECT else 6.0)
     error = run(GaussianBlur(sigma=sigma, scale=scale, edge=edge.name), {"image": picture}) - expected
-    assert np.abs(error).max() <= (1e-5 if sigma < 7.0 else 1e-3) * expected.max()
-    if sigma > 7.0:
+    assert np.abs(error).max() <= (1e-5 if sigma < DIRECT else 1e-3) * expected.max()
+    if sigma > DIRECT:
         assert np.sqrt((error**2).mean()) <= 3e-4 * np.sqrt((expected**2).mean())
 
 
@@ -119,7 +125,7 @@ def test_an_impulse_becomes_a_gaussian(run, sigma, phase):
     picture = impulse(2 * reach, 2 * reach, reach + phase[0], reach + phase[1])
     expected = blurred(picture, sigma)
     found = run(GaussianBlur(sigma=sigma), {"image": picture})
-    assert np.abs(found - expected).max() <= 1e-3 * expected.max()
+    assert np.abs(found - expected).max() <= PEAKS[sigma] * expected.max()
 
 
 @pytest.mark.parametrize("sigma", [2.5, *LARGE])
@@ -136,13 +142,13 @@ def test_a_step_becomes_the_error_function(run, sigma, offset):
     assert np.abs(found - expected[None, :, None]).max() <= 1e-4
 
 
-@pytest.mark.parametrize("sigma", [0.3, 2.0, 6.9, *LARGE])
+@pytest.mark.parametrize("sigma", [0.3, 2.0, 4.0, *LARGE])
 def test_a_flat_picture_stays(run, sigma):
     flat = np.full((37, 53, 4), 3.75, np.float32)
     np.testing.assert_allclose(run(GaussianBlur(sigma=sigma), {"image": flat}), flat, rtol=2e-6)
 
 
-@pytest.mark.parametrize("sigma", [0.3, 2.0, 7.0, 20.0])
+@pytest.mark.parametrize("sigma", [0.3, 2.0, 4.5, 7.0, 20.0])
 def test_no_light_is_lost(run, hdr, sigma):
     margin = int(6.0 * sigma) + 8
     picture = np.pad(hdr(23, 19), ((margin, margin), (margin, margin), (0, 0)))
@@ -150,7 +156,7 @@ def test_no_light_is_lost(run, hdr, sigma):
     np.testing.assert_allclose(found, picture.sum(axis=(0, 1), dtype=np.float64), rtol=1e-4)
 
 
-@pytest.mark.parametrize(("sigma", "tolerance"), [(2.0, 1e-7), (6.9, 1e-7), (20.0, 1e-3)])
+@pytest.mark.parametrize(("sigma", "tolerance"), [(2.0, 1e-7), (4.0, 1e-7), (6.9, 3e-4), (20.0, 1e-3)])
 def test_an_impulse_spreads_alike_in_all_directions(run, sigma, tolerance):
     side = 2 * int(5.0 * sigma) + 1
     found = run(GaussianBlur(sigma=sigma), {"image": impulse(side, side, side // 2, side // 2)})
@@ -234,8 +240,8 @@ def test_the_largest_numbers_that_are_no_holes_stay(run, sigma, sign):
     np.testing.assert_allclose(run(GaussianBlur(sigma=sigma), {"image": picture}), picture, rtol=1e-5)
 
 
-@pytest.mark.parametrize(("sigma", "tolerance"), [(5.0, 1e-5), (10.0, 3e-4), (50.0, 3e-4)])
+@pytest.mark.parametrize(("sigma", "tolerance"), [(4.0, 1e-5), (5.0, 1e-4), (10.0, 3e-4), (50.0, 3e-4)])
 def test_a_rendered_frame(run, rendered_frame, sigma, tolerance):
-    expected = blurred(rendered_frame, sigma, truncate=4.0 if sigma < 7.0 else 6.0)
+    expected = blurred(rendered_frame, sigma, truncate=4.0 if sigma < DIRECT else 6.0)
     error = run(GaussianBlur(sigma=sigma), {"image": rendered_frame}) - expected
     assert np.sqrt((error**2).mean()) <= tolerance * np.sqrt((expected**2).mean())

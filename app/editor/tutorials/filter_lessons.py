@@ -88,8 +88,8 @@ CONVOLUTION = Lesson(
             "title kernel",
         ),
         Step(
-            "One pass reads 9 pixels for each one that it makes. A blur of 49 x 49 pixels would read 2401. The next "
-            "lesson does it with 98.",
+            "One pass reads 9 pixels for each one that it makes. A blur of 33 x 33 pixels would read 1089. The next "
+            "lesson does it with 66.",
             "Passes",
             panel=PanelTitle.PASSES,
         ),
@@ -134,7 +134,7 @@ SEPARABLE_BLUR = Lesson(
             marks="convolve y",
         ),
         Step(
-            "Here sigma is 6 pixels, and the weights reach 24 pixels to each side: 98 reads instead of 2401. With "
+            "Here sigma is 4 pixels, and the weights reach 16 pixels to each side: 66 reads instead of 1089. With "
             "2160 lines the same blur is eight times as wide, and saves eight times as much.",
             "Passes",
             panel=PanelTitle.PASSES,
