@@ -55,7 +55,7 @@ class Sharpen(Filter):
         return draw.point(
             "sharpen",
             self.image,
-            soft=draw.blur(self.image, self.sigma, self.edge),
+            soft=draw.blur(self.image, self.sigma, self.edge, precise=True),
             amount=self.amount,
             threshold=self.threshold,
             limit=self.limit,

@@ -96,7 +96,7 @@ class Canny(Filter):
         tone = draw.point("canny_tone", self.image, result=Field())
         gradient = draw(
             "canny_gradient",
-            tone=draw.blur(tone, hypot(self.sigma, spacing.sigma), self.edge),
+            tone=draw.blur(tone, hypot(self.sigma, spacing.sigma), self.edge, precise=True),
             edge=self.edge,
             overlap=spacing.step,
             result=Vector(width=2),

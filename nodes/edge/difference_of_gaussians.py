@@ -87,7 +87,10 @@ class DifferenceOfGaussians(Filter):
         fine, coarse = (
             self._blur_along_edges(draw, tone)
             if self.guide == "flow"
-            else (draw.blur(tone, self.sigma, self.edge), draw.blur(tone, self.sigma * self.ratio, self.edge))
+            else (
+                draw.blur(tone, self.sigma, self.edge, precise=True),
+                draw.blur(tone, self.sigma * self.ratio, self.edge, precise=True),
+            )
         )
         value = draw.point(
             "difference_of_gaussians_value",
@@ -106,7 +109,7 @@ class DifferenceOfGaussians(Filter):
         are the channels of one picture, so that its directions are followed once for both.
         """
         changes = draw("difference_of_gaussians_changes", tone=tone, edge=self.edge, overlap=1, result=Vector(width=3))
-        tensor = draw.blur(changes, self.smoothing, self.edge)
+        tensor = draw.blur(changes, self.smoothing, self.edge, precise=True)
         blurs = draw(
             "difference_of_gaussians_across",
             tone=tone,

@@ -55,7 +55,7 @@ class EdgeDetect(Filter):
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         spacing = space_pixels(self.width)
-        image = draw.blur(self.image, spacing.sigma, self.edge)
+        image = draw.blur(self.image, spacing.sigma, self.edge, precise=True)
         # Pixels are a whole number apart, the width need not be: the gain makes up for the difference.
         settings: dict[str, Any] = {
             "image": image,

@@ -67,7 +67,7 @@ class Emboss(Filter):
     def passes(self, draw: Draw) -> Drawn:
         spacing = space_pixels(self.width)
         tone = draw.point("emboss_tone", self.image, result=Field())
-        relief = draw.blur(tone, hypot(self.softness, spacing.sigma), self.edge)
+        relief = draw.blur(tone, hypot(self.softness, spacing.sigma), self.edge, precise=True)
         return draw(
             "emboss",
             self.image,

@@ -74,7 +74,7 @@ class Kuwahara(Filter):
 
     def _average_sectors(self, draw: Draw, tones: Drawn) -> Drawn:
         changes = draw("kuwahara_changes", tones=tones, edge=self.edge, overlap=1, result=Vector(width=3))
-        flow = draw.blur(changes, self.smoothing, self.edge)
+        flow = draw.blur(changes, self.smoothing, self.edge, precise=True)
         brush: dict[str, Any] = {"kind": self.kind, "radius": self.radius, "sharpness": self.sharpness}
         reach = ceil(2.0 * self.radius)
         cell = self._find_cell(min(draw.size))

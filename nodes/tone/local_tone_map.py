@@ -111,14 +111,14 @@ class LocalToneMap(Filter):
             nits=self.nits,
         )
         light = draw.point("local_tone_map_light", self.image, result=Vector(width=2), scene=scene)
-        center = draw.blur(light, _SIGMA * self.size)
+        center = draw.blur(light, _SIGMA * self.size, precise=True)
         even: dict[str, Any] = {"scene": scene, "sharpness": self.sharpness, "threshold": self.threshold}
         area = draw.point(
             "local_tone_map_start", result=Vector(width=2), light=light, center=center, scale=1 / _RATIO, **even
         )
         for index in range(_SCALES):
             scale = _RATIO**index
-            surround = draw.blur(light, _SIGMA * self.size * scale * _RATIO)
+            surround = draw.blur(light, _SIGMA * self.size * scale * _RATIO, precise=True)
             area = draw.point(
                 "local_tone_map_grow",
                 result=Vector(width=2),

@@ -24,7 +24,7 @@ def blurs(picture: np.ndarray, sigma: float, ratio: float, mode: str) -> tuple[n
 
 
 @pytest.mark.parametrize("size", [(37, 22), (5, 1)])
-@pytest.mark.parametrize(("sigma", "ratio", "p"), [(1.0, 1.6, 20.0), (1.3, 3.0, 4.0)])
+@pytest.mark.parametrize(("sigma", "ratio", "p"), [(1.0, 1.6, 20.0), (2.2, 3.0, 4.0)])
 def test_xdog_equals_the_paper(run, hdr, edge, size, sigma, ratio, p):
     picture = hdr(*size)
     picture[..., 3] = picture[..., 3] * 0.9 + 0.1
@@ -39,7 +39,7 @@ def test_xdog_equals_the_paper(run, hdr, edge, size, sigma, ratio, p):
     np.testing.assert_array_equal(ink[..., 3], picture[..., 3])
 
 
-@pytest.mark.parametrize(("sigma", "ratio"), [(1.0, 1.6), (2.0, 2.0)])
+@pytest.mark.parametrize(("sigma", "ratio"), [(1.0, 1.6), (3.0, 2.0)])
 def test_dog_is_the_difference(run, hdr, edge, sigma, ratio):
     picture = hdr(33, 20, opaque=True)
     fine, coarse = blurs(picture, sigma, ratio, edge.scipy)
@@ -48,16 +48,6 @@ def test_dog_is_the_difference(run, hdr, edge, sigma, ratio):
     expected = 2.0 * (fine - coarse)
     for channel in range(3):
         assert np.abs(found[..., channel] - expected).max() <= 1e-5 * float(fine.max())
-
-
-@pytest.mark.parametrize(("sigma", "ratio"), [(2.2, 3.0), (3.0, 2.0), (5.0, 1.6)])
-def test_wide_lines_are_as_exact_as_the_blur(run, hdr, edge, sigma, ratio):
-    """From a sigma of 4.1 pixels on, blurs are within 3e-4 (RMS) of Gaussians."""
-    picture = hdr(61, 47, opaque=True)
-    fine, coarse = blurs(picture, sigma, ratio, edge.scipy)
-    node = DifferenceOfGaussians(kind="dog", sigma=sigma, ratio=ratio, strength=1.0, edge=edge.name)
-    error = run(node, {"image": picture})[..., 0] - (fine - coarse)
-    assert np.sqrt((error**2).mean()) <= 3e-4 * np.sqrt((coarse**2).mean())
 
 
 def test_a_flat_picture_is_paper_or_ink(run):

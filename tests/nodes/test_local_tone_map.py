@@ -59,14 +59,14 @@ def scene(width=53, height=39, seed=1):
         {"sharpness": 12.0},
         {"sharpness": 1.0, "threshold": 0.2},
         {"key": 0.5},
-        {"size": 0.4},
+        {"size": 0.6},
         {"threshold": 0.01},
     ],
     ids=str,
 )
 def test_it_is_the_papers_operator(run, values):
-    """Where a scale is chosen by a hair, either choice is right. All areas are small enough for exact blurs."""
-    image, values = scene(), {"size": 0.6} | values
+    """Where a scale is chosen by a hair, either choice is right."""
+    image = scene()
     renamed = {"sharpness": "phi", "threshold": "epsilon"}
     expected, margin = reinhard(image[..., :3], **{renamed.get(name, name): value for name, value in values.items()})
     found = run(LocalToneMap(clip=False, **values), {"image": image})[..., :3]
@@ -78,20 +78,19 @@ def test_it_is_the_papers_operator(run, values):
 def test_colors_end_at_white(run):
     """The paper's operator, then numpy's clip: channels of strong colors exceed 1 long before luminance does."""
     image = scene()
-    expected, margin = reinhard(image[..., :3], size=0.6)
-    shown = run(LocalToneMap(size=0.6), {"image": image})[..., :3]
+    expected, margin = reinhard(image[..., :3])
+    shown = run(LocalToneMap(), {"image": image})[..., :3]
     sure = margin > 5e-3
     assert (expected[sure] > 1.1).sum() > 10
     np.testing.assert_allclose(shown[sure], np.clip(expected, 0.0, 1.0)[sure], atol=2e-6)
 
 
-@pytest.mark.parametrize(("size", "tolerance"), [(1.0, 1e-4), (2.5, 3e-3)])
-def test_wide_areas_are_as_exact_as_the_blur(run, size, tolerance):
-    """Sigmas above 4.1 pixels are blurred at a small size, to 7e-4 of the brightest light nearby."""
+def test_wide_areas_are_as_exact_as_the_blur(run):
+    """Sigmas above 7 pixels are blurred at a small size, to 3e-4 of the brightest light nearby."""
     image = scene()
-    expected, margin = reinhard(image[..., :3], size=size)
-    error = np.abs(run(LocalToneMap(clip=False, size=size), {"image": image})[..., :3] - expected)
-    assert (error / np.maximum(1.0, expected))[margin > 5e-3].max() < tolerance
+    expected, margin = reinhard(image[..., :3], size=2.5)
+    error = np.abs(run(LocalToneMap(clip=False, size=2.5), {"image": image})[..., :3] - expected)
+    assert (error / np.maximum(1.0, expected))[margin > 5e-3].max() < 3e-3
 
 
 def test_an_even_picture_is_reinhards_curve(run):

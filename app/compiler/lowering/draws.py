@@ -242,9 +242,11 @@ class Recorder(OutlineDraw):
             ExternalProgram((self._make_shape(result, size or self.size),), self._owner, text, samplers, values)
         )
 
-    def blur(self, image: Pixels, sigma: float | tuple[float, float], edge: Edge = "clamp") -> Drawn:
+    def blur(
+        self, image: Pixels, sigma: float | tuple[float, float], edge: Edge = "clamp", *, precise: bool = False
+    ) -> Drawn:
         sigmas = sigma if isinstance(sigma, tuple) else (sigma, sigma)
-        return self._blur(image, [gaussian.plan_axis(max(0.0, axis_sigma)) for axis_sigma in sigmas], edge)
+        return self._blur(image, [gaussian.plan_axis(max(0.0, one), precise=precise) for one in sigmas], edge)
 
     def spread(self, image: Pixels, weights: tuple[float, ...], edge: Edge = "clamp") -> Drawn:
         return self._blur(image, [gaussian.plan_weights(weights)] * 2, edge)

@@ -33,6 +33,9 @@ sigma of 4.1 on, where a direct convolution takes a fifth longer (twice as long 
 With less the grid of the small picture shows: the largest error of an impulse is 4e-3 of its peak with 1.0, 1.4e-3 with
 1.4, 7e-4 with 1.8 and 4e-4 with 2.2."""
 
+_PRECISE_BELOW = 7.0
+"""Up to this sigma precise blurs are convolved directly. At 7 that takes 57 reads for each axis, and twice the time."""
+
 _SPLINE_CUMULANT = -1.0 / 30.0
 """The fourth cumulant of a cubic B-spline: that of four boxes, each -1/120. A Gaussian's is 0."""
 
@@ -54,8 +57,10 @@ class BlurAxis(Struct, frozen=True):
         return reach + factor * (len(self.weights) // 2 + 3)
 
 
-def plan_axis(sigma: float) -> BlurAxis:
+def plan_axis(sigma: float, *, precise: bool = False) -> BlurAxis:
     """Split `sigma`, in pixels, into decimations and a convolution at the small size."""
+    if precise and sigma < _PRECISE_BELOW:
+        return _plan_direct(sigma)
     steps: list[int] = []
     factor, variance = 1, 0.0
     while True:
@@ -70,9 +75,13 @@ def plan_axis(sigma: float) -> BlurAxis:
         else:
             break
     if factor == 1:
-        return BlurAxis((), 1, gaussian_weights(sigma) if sigma > 0.0 else ())
+        return _plan_direct(sigma)
     rest = math.sqrt(sigma * sigma - variance - factor**2 / 3.0) / factor
     return BlurAxis(tuple(steps), factor, _pointed_weights(rest))
+
+
+def _plan_direct(sigma: float) -> BlurAxis:
+    return BlurAxis((), 1, gaussian_weights(sigma) if sigma > 0.0 else ())
 
 
 def plan_weights(smooth: tuple[float, ...]) -> BlurAxis:
