@@ -33,11 +33,12 @@ def canny(tone: np.ndarray, sigma: float, low: float, high: float, mode: str) ->
     return np.isin(parts, strong[strong > 0])
 
 
-@pytest.mark.parametrize("sigma", [0.0, 1.0, 2.3])
+@pytest.mark.parametrize(
+    ("sigma", "low", "high"), [(0.0, 0.05, 0.15), (1.0, 0.05, 0.15), (2.3, 0.01, 0.03), (6.0, 5e-4, 2e-3)]
+)
 @pytest.mark.parametrize("size", [(61, 43), (12, 1), (1, 1)])
-def test_it_equals_the_algorithm(run, edge, sigma, size):
+def test_it_equals_the_algorithm(run, edge, sigma, low, high, size):
     tone = gaussian_filter(np.random.default_rng(size[0]).random(size[::-1]), 0.8)
-    low, high = 0.05, 0.15
     found = run(Canny(sigma=sigma, low=low, high=high, edge=edge.name), {"image": light_of(tone)}, output="lines")
     np.testing.assert_array_equal(found[..., 0] > 0.5, canny(tone, sigma, low, high, edge.scipy))
 

@@ -53,6 +53,18 @@ def test_the_luminance_equals_the_libraries(run, hdr, edge, operator):
     np.testing.assert_allclose(magnitude[..., 0], expected, rtol=1e-5, atol=tolerance)
 
 
+def test_a_wide_operator_is_that_of_a_smooth_picture(run, hdr, edge):
+    """The pixels that are compared are 20 apart, of a picture that is blurred like boxes of as many pixels."""
+    width, picture = 20, hdr(97, 71)
+    tone = picture[..., :3].astype(np.float64) @ WEIGHTS
+    tone = ndimage.gaussian_filter(tone, np.sqrt((width**2 - 1) / 12.0), mode=edge.scipy)
+    kernel = np.zeros((2 * width + 1, 2 * width + 1))
+    kernel[::width, ::width] = np.outer([1.0, 2.0, 1.0], [-1.0, 0.0, 1.0]) / 4.0
+    expected = np.hypot(*(ndimage.correlate(tone, one, mode=edge.scipy) for one in (kernel, kernel.T)))
+    found = run(EdgeDetect(operator="sobel", width=width, edge=edge.name), {"image": picture}, output="magnitude")
+    np.testing.assert_allclose(found[..., 0], expected, rtol=0.0, atol=1e-5 * float(tone.max()))
+
+
 @pytest.mark.parametrize("operator", OPERATORS)
 def test_a_step_of_one_reads_one(run, operator):
     step = np.ones((9, 12, 4), np.float32)

@@ -25,7 +25,8 @@ def shading(picture, direction, elevation, height, softness, mode) -> np.ndarray
 
 @pytest.mark.parametrize("size", [(33, 21), (4, 3)])
 @pytest.mark.parametrize(
-    ("direction", "elevation", "height", "softness"), [(135.0, 45.0, 6.0, 0.0), (-20.0, 70.0, -3.0, 1.5)]
+    ("direction", "elevation", "height", "softness"),
+    [(135.0, 45.0, 6.0, 0.0), (-20.0, 70.0, -3.0, 1.5), (60.0, 45.0, 40.0, 6.0)],
 )
 @pytest.mark.parametrize("kind", ["relief", "bump"])
 def test_it_equals_the_formula(run, hdr, edge, size, kind, direction, elevation, height, softness):

@@ -44,6 +44,18 @@ def test_taking_all_detail_away_is_the_blur(run, hdr):
     np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-5)
 
 
+def test_around_a_lamp_light_is_taken_away_like_a_gaussian(run):
+    """The same shape to 2e-5 of its peak: an error of a blur would be seen as rings once it is subtracted."""
+    lamp = np.ones((61, 61, 4), np.float32)
+    lamp[30, 30, :3] = 300.0
+    found = run(Sharpen(sigma=6.0, limit=1e9, channels="separate"), {"image": lamp}).astype(np.float64)
+    halo = gaussian_filter(lamp[..., 0].astype(np.float64), 6.0, mode="nearest") - 1.0
+    around = lamp[..., 0] == 1.0
+    np.testing.assert_allclose(
+        1.0 - found[around][:, 0], Sharpen().amount * halo[around], rtol=0.0, atol=2e-5 * halo.max()
+    )
+
+
 def test_flat_and_faint_stay(run, hdr):
     flat = np.full((9, 11, 4), 0.37, np.float32)
     np.testing.assert_allclose(run(Sharpen(amount=3.0), {"image": flat}), flat, rtol=1e-5)
