@@ -89,6 +89,18 @@ def test_depth_of_every_kind_comes_out_planar(renderer, tmp_path, kind, told):
     assert (np.abs(depth - data["depth"]) / data["depth"]).max() < 1e-5
 
 
+@pytest.mark.parametrize("is_near_white", [False, True])
+def test_depth_from_0_to_1_comes_out_planar(renderer, tmp_path, is_near_white):
+    """What 0 and 1 mean is found by the positions."""
+    data = scene()
+    near, far = data["depth"].min() - 0.5, data["depth"].max() + 2.0
+    stored = (data["depth"] - near) / (far - near)
+    stored = 1.0 - stored if is_near_white else stored
+    path = write(tmp_path / "a.exr", {"RGB": COLOR, "depth.Z": stored, "P.XYZ": data["position"]})
+    (depth,) = shown(renderer, ReadRender(path=path), "depth")
+    assert (np.abs(depth - data["depth"]) / data["depth"]).max() < 1e-5
+
+
 @pytest.mark.parametrize("space", ["world", "camera"])
 @pytest.mark.parametrize("told", [False, True], ids=["found", "chosen"])
 @pytest.mark.parametrize("packed", [False, True], ids=["signed", "from 0 to 1"])
