@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 from halation.compiler import Library, load_library
-from halation.compiler.library import parse
+from halation.compiler.library import InstalledTexts, parse
 from halation.errors import ShaderError
 from halation.graph import Graph, Input, Output, Port
 from halation.nodes.color.exposure import Exposure
@@ -109,3 +111,20 @@ def test_a_file_included_twice_appears_once(plan):
     }
     source = plan(exposed(), library=library(**texts)).passes[0].shader.source
     assert source.count("float lib_b()") == 1 and "unused" not in source
+
+
+def test_shaders_of_plug_ins_follow_our_own(monkeypatch, tmp_path):
+    ours = [*InstalledTexts()]
+    (tmp_path / "shaders/inner").mkdir(parents=True)
+    for name in ("tint", "inner/glow"):
+        (tmp_path / f"shaders/{name}.glsl").write_text("vec4 acme_made(vec4 image) { return image; }")
+    with_nodes = SimpleNamespace(namespace="acme", folder=tmp_path, nodes={"acme.tint": None})
+    without = SimpleNamespace(namespace="other", folder=tmp_path, nodes={})
+    monkeypatch.setattr("halation.compiler.library.plugins", lambda: (with_nodes, without))
+    texts = InstalledTexts()
+    assert [*texts][: len(ours)] == ours
+    assert {*texts} - {*ours} == {"acme/tint", "acme/inner/glow"}
+    assert len(texts) == len(ours) + 2
+    assert "acme/tint" in texts and ours[0] in texts
+    assert not any(name in texts for name in ("acme/missing", "other/tint", "nowhere/tint"))
+    assert texts["acme/inner/glow"].file == "acme/shaders/inner/glow.glsl"
