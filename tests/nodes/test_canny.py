@@ -34,7 +34,8 @@ def canny(tone: np.ndarray, sigma: float, low: float, high: float, mode: str) ->
 
 
 @pytest.mark.parametrize(
-    ("sigma", "low", "high"), [(0.0, 0.05, 0.15), (1.0, 0.05, 0.15), (2.3, 0.01, 0.03), (6.0, 5e-4, 2e-3)]
+    ("sigma", "low", "high"),
+    [(0.0, 0.05, 0.15), (1.0, 0.05, 0.15), (2.3, 0.05, 0.15), (2.3, 0.01, 0.03), (6.0, 5e-4, 2e-3)],
 )
 @pytest.mark.parametrize("size", [(61, 43), (12, 1), (1, 1)])
 def test_it_equals_the_algorithm(run, edge, sigma, low, high, size):

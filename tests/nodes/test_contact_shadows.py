@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from board_scene import measure_errors, take_board
 from box_scene import box, dilated, taken
 from geometry import rays
 from halation.nodes import look_at
@@ -161,20 +162,9 @@ def test_a_corner_in_shadow_has_no_bright_line(run, light, softness):
 
 @pytest.mark.parametrize("turn", [0, 45, 90, 135, 200])
 def test_a_penumbra_is_as_wide_whichever_way_its_edge_runs(run, turn):
-    """A disc of light right above an edge: a floor sees the segment of the disc that lies beyond a chord."""
-    size, high = 96, 4.0
-    camera = look_at((0.0, 0.0, high), (0.0, 0.0, 0.0), (1.2, 1.2), (0.0, 1.0, 0.0))
-    eye, way = np.array([0.0, 0.0, high]), rays(camera, size, size)
-    toward = np.array([np.cos(np.radians(turn)), np.sin(np.radians(turn)), 0.0])
-    covered = (eye + 3.0 * way) @ toward < 0.0
-    normal = np.broadcast_to((0.0, 0.0, 1.0), (size, size, 3))
+    """A disc of light right above the edge of a board."""
+    board = take_board(turn)
     sun = {"direction": (0.0, 0.0, 1.0), "softness": 60.0, "quality": "reference"}
-    found = shaded(run, camera, np.where(covered, 3.0, high), normal, **sun)
-    chord = (eye + high * way) @ toward / np.tan(np.radians(30.0))  # in radii of the disc, from its middle
-    rest = np.sqrt(np.maximum(1.0 - chord * chord, 0.0))
-    expected = 0.5 + (chord * rest + np.arcsin(np.clip(chord, -1.0, 1.0))) / np.pi
-    middle = np.abs(np.arange(size) - size / 2) < size / 4  # what is beyond the picture throws no shadow
-    half = ~covered & (chord > 0.1) & (chord < 0.9) & middle & middle[:, None]
-    assert half.sum() > 300
-    error = (found - expected)[half]
+    found = shaded(run, board.camera, board.depth, board.normal, **sun)
+    error = measure_errors(board, found, board.place @ board.toward / np.tan(np.radians(30.0)))
     assert abs(error.mean()) < 0.01 and np.sqrt((error**2).mean()) < 0.015

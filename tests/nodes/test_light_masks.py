@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from board_scene import measure_errors, take_board
 from box_scene import box, dilated, taken
-from geometry import rays
-from halation.nodes import Light, LightKind, look_at, number_lights
+from halation.nodes import Light, LightKind, number_lights
 from halation.nodes.light.deferred_lighting import DeferredLighting
 from lighting_formulas import Array
 from msgspec import structs
@@ -125,31 +125,20 @@ def test_without_a_camera_nothing_casts_shadows(run, stage):
 @pytest.mark.parametrize("turn", [0, 45, 90, 135, 200])
 @pytest.mark.parametrize("kind", [LightKind.SUN, LightKind.SPHERE, LightKind.DISC])
 def test_a_penumbra_is_as_wide_whichever_way_its_edge_runs(run, kind, turn):
-    """A round light above the edge of a board: a floor sees the segment of the light that lies beyond a chord."""
-    size, eye, above, radius = 96, np.array([0.0, 0.0, 4.0]), np.array([0.0, 0.0, 3.0]), 1.2
-    camera = look_at(tuple(eye), (0.0, 0.0, 0.0), (1.2, 1.2), (0.0, 1.0, 0.0))
-    way = rays(camera, size, size)
-    toward = np.array([np.cos(np.radians(turn)), np.sin(np.radians(turn)), 0.0])
-    covered = (eye + 3.0 * way) @ toward < 0.0
-    depth, normal = np.where(covered, 3.0, 4.0), np.broadcast_to((0.0, 0.0, 1.0), (size, size, 3))
+    """A round light right above the edge of a board."""
+    above, radius, board = np.array([0.0, 0.0, 3.0]), 1.2, take_board(turn)
     light = Light(kind, tuple(above), (0.0, 0.0, -1.0), size=radius, angle=60.0)
-    given = {"camera": camera, "depth": depth, "normal": normal}
+    given = {"camera": board.camera, "depth": board.depth, "normal": board.normal}
     lit, shaded = (render(run, (structs.replace(light, shadow=on),), given) for on in (False, True))
-    place = eye + 4.0 * way
-    off = place @ toward
+    off = board.place @ board.toward
     if kind is LightKind.SUN:
-        chord = off / np.tan(np.radians(30.0))  # in radii of the light, from its middle
+        chord = off / np.tan(np.radians(30.0))
     else:
         # A point of the light is seen if it lies beyond the plane through the place and the edge of the board.
-        across = toward + off[..., None] * np.array([0.0, 0.0, 1.0])
-        facing = above - place if kind is LightKind.SPHERE else np.broadcast_to(above, place.shape)
+        across = board.toward + off[..., None] * np.array([0.0, 0.0, 1.0])
+        facing = above - board.place if kind is LightKind.SPHERE else np.broadcast_to(above, board.place.shape)
         facing = facing / np.linalg.norm(facing, axis=-1, keepdims=True)
         across -= (across * facing).sum(-1, keepdims=True) * facing
         chord = 2.0 * off / (radius * np.linalg.norm(across, axis=-1))
-    rest = np.sqrt(np.maximum(1.0 - chord * chord, 0.0))
-    expected = 0.5 + (chord * rest + np.arcsin(np.clip(chord, -1.0, 1.0))) / np.pi
-    middle = np.abs(np.arange(size) - size / 2) < size / 4  # what is beyond the picture throws no shadow
-    half = ~covered & (chord > 0.1) & (chord < 0.9) & middle & middle[:, None]
-    assert half.sum() > 300
-    error = (shaded / lit - expected)[half]
+    error = measure_errors(board, shaded / lit, chord)
     assert abs(error.mean()) < 0.02 and np.sqrt((error**2).mean()) < 0.03
