@@ -208,9 +208,10 @@ def open_still_editor(
     scale: float = 1.0,
     theme: str = "dark",
     screen: Point = (1600.0, 1200.0),
+    density: float = 1.0,
 ) -> Iterator[StillEditor]:
     """An editor with a graph or a graph file. What it remembers is in a folder of its own there."""
-    with open_still(size, at, scale, PALETTES[theme], screen) as pane, pytest.MonkeyPatch.context() as patch:
+    with open_still(size, at, scale, PALETTES[theme], screen, density) as pane, pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_DATA_HOME", str(folder / "data"))  # no preset of the user is written
         patch.delenv("HALATION_PATH", raising=False)  # and none of the site is listed
         patch.setattr(BackgroundCache, "get", _make_at_once)

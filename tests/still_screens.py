@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 from gui_renders import list_renders
 from gui_screens import SAMPLES
+from halation.authoring.background.graph_fit import FitOutcome, FitStep, FittedNumberReport
 from halation.authoring.commands import (
     AddComment,
     AddFrame,
@@ -109,10 +112,35 @@ def show_dialogs(still: StillEditor) -> Screens:
     dialogs.question = None
     dialogs.matches = True
     yield "match", "Match"
+    yield from _show_search_for_values(still)
     dialogs.matches = False
     still.editor.log.add("saved")
     still.editor.log.add("the graphics card is short of memory", "warning")
     yield "toasts", "Messages"
+
+
+def _show_search_for_values(still: StillEditor) -> Screens:
+    """The window of a search: before its first picture, while it runs, and each way that it ends."""
+    window: Any = still.find("Match")
+    values = tuple(
+        FittedNumberReport(f"grade.gain.{number}", 1.0, 0.5 + 0.123456 * number, number % 3 != 0)
+        for number in range(12)
+    )
+    found = FitOutcome(error=(0.25, 0.0123), delta_e=(12.0, 1.5), values=values, renders=321, seconds=14.6)
+    for name, step, outcome in (
+        ("match begins", None, None),
+        ("match runs", FitStep({}, 0.05, 17, 0.4), None),
+        ("match found", None, found),
+        ("match found less", None, FitOutcome(error=(0.25, 0.2), values=values[:2], renders=1)),
+        (
+            "match failed",
+            None,
+            FitOutcome(fault="the reference has 3 rows, and the picture has 4: choose one of its size"),
+        ),
+    ):
+        window._search._fit = SimpleNamespace(step=step, outcome=outcome, stop=lambda: None)
+        yield name, "Match"
+    window.close()
 
 
 def show_more_dialogs(still: StillEditor) -> Screens:

@@ -283,9 +283,11 @@ class StillWindow:
 @contextmanager
 def open_still(
     size: Point = (320.0, 600.0), at: Point = (20.0, 30.0), scale: float = 1.0, palette: Palette = DARK,
-    screen: Point = (1600.0, 1200.0),
+    screen: Point = (1600.0, 1200.0), density: float = 1.0,
 ) -> Iterator[StillWindow]:  # fmt: skip
     """A context of the library with the editor's style and font, and a pane in it.
+
+    `density` is how many pixels of the screen a unit of the interface has, along each axis.
 
     The font has no hints: then glyphs have no whole pixels, and texts grow evenly with the interface.
     """
@@ -293,6 +295,7 @@ def open_still(
     try:
         io = imgui.get_io()
         io.display_size = imgui.ImVec2(screen[0] * scale, screen[1] * scale)
+        io.display_framebuffer_scale = imgui.ImVec2(density, density)
         io.delta_time = 1.0 / 60.0
         io.backend_flags |= int(imgui.BackendFlags_.renderer_has_textures)
         io.set_ini_filename("")

@@ -119,9 +119,12 @@ def test_an_id_is_a_usual_number():
     assert float_bits(0x12345678) == 0x12345678
 
 
-def bare(path, layer: str = "crypto_object", **attributes: str) -> str:
-    """A file of two ranks, with ids at the ends of what floats hold."""
-    ids = [float_bits(murmur3(name)) for name in (b"first", b"second")] + [0x00800000, 0x7F7FFFFF]
+IDS = [*(float_bits(murmur3(name)) for name in (b"first", b"second")), 0x00800000, 0x7F7FFFFF]
+"""Two names, and the ends of what floats hold."""
+
+
+def bare(path, layer: str = "crypto_object", ids=IDS, **attributes: str) -> str:
+    """A file of two ranks: each of four ids covers three quarters of a pixel, and a quarter of the one before."""
     pixels = np.zeros((1, 4, 4), np.float32)
     for x in range(4):
         pixels[0, x, 0::2] = np.array([ids[x], ids[(x + 1) % 4]], np.uint32).view(np.float32)
@@ -174,6 +177,13 @@ def test_the_colors_are_as_opaque_as_what_is_covered(run):
     whole = np.where(ids != 0, covered, 0.0).sum(axis=0)
     np.testing.assert_allclose(colors[..., 3], whole, atol=1e-6)
     assert (colors[..., :3].max(axis=2) <= colors[..., 3] + 1e-6).all()
+
+
+def test_what_no_object_covers_has_no_color(run, tmp_path):
+    """Id 0 is that of nothing (Cryptomatte specification 1.2), whatever a renderer writes beside it."""
+    path = bare(tmp_path / "bare.exr", ids=[IDS[0], 0, 0, IDS[1]])
+    assert run(Cryptomatte(path=path), output="colors")[0, :, 3].tolist() == [0.75, 0.0, 0.25, 1.0]
+    assert run(Cryptomatte(path=path, pick="*"), output="matte")[0, :, 0].tolist() == [0.75, 0.0, 0.25, 1.0]
 
 
 def test_a_file_without_mattes_says_so(run, tmp_path):

@@ -66,10 +66,12 @@ def compare(ours: list[Shape], theirs: list[Shape]) -> None:
         np.testing.assert_allclose(mine.points, other.points, atol=1e-6)
 
 
-def test_words_lie_in_their_node_and_not_on_each_other(make_brush, scene) -> None:
+@pytest.mark.parametrize("subtitle", ["", "Temporal anti-aliasing of a very long name"])
+def test_words_lie_in_their_node_and_not_on_each_other(make_brush, scene, subtitle: str) -> None:
     for box in scene.boxes.values():
         if box.layout is None:
             continue
+        box = replace(box, layout=replace(box.layout, subtitle=subtitle or box.layout.subtitle))
         brush = make_brush()
         paint_node.paint_node(brush, box, box.layout, paint_node.NodeLook(viewed="A", badges="2", fault="no"))
         (left, top), (right, bottom) = brush.project_corners(box.rect)

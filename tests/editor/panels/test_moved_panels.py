@@ -49,12 +49,21 @@ MOVED = (
 """What lies in its panel; dialogs lie in the middle of the screen."""
 
 
-def compare(first: list[Shape], second: list[Shape], factor: float, shift: tuple[float, float]) -> str:
+EXACT, ROUNDED = 0.01, 2.0
+"""How far a thing may lie from its place. Places are rounded to whole pixels, and the widths of texts too."""
+
+
+def compare(
+    first: list[Shape],
+    second: list[Shape],
+    factor: float,
+    shift: tuple[float, float] = (0.0, 0.0),
+    slack: float = EXACT,
+) -> str:
     """The first thing that is not where it should be."""
-    slack = 1.0 + factor if factor != 1.0 else 0.01  # places are rounded to whole pixels
     for one, other in zip(first, second, strict=False):
         expected = one.change(factor, shift)
-        is_zoom = factor != 1.0 and one.text.endswith(" %")  # the zoom of the picture
+        is_zoom = slack != EXACT and one.text.endswith(" %")  # the zoom of the picture
         is_date = DATE.fullmatch(one.text) and DATE.fullmatch(other.text)  # a folder of the tree may change meanwhile
         is_other = one.text != other.text and not (is_zoom or is_date)
         if is_other or (one.kind, one.color) != (other.kind, other.color):
@@ -77,9 +86,17 @@ def test_a_panel_that_is_moved_draws_the_same(draw, screens) -> None:
 @pytest.mark.parametrize("screens", [*MOVED, show_dialogs, show_more_dialogs])
 def test_everything_grows_with_the_interface(draw, screens) -> None:
     small, large = draw(screens), draw(screens, scale=2.0)
-    faults = {name: fault for name in small if (fault := compare(small[name].all, large[name].all, 2.0, (0.0, 0.0)))}
+    faults = {name: fault for name in small if (fault := compare(small[name].all, large[name].all, 2.0, slack=3.0))}
     faults = {name: fault for name, fault in faults.items() if not name.startswith(UNEVEN)}
     assert not faults
+
+
+@pytest.mark.parametrize("screens", [show_viewer, show_handles, show_opened_panels])
+def test_a_screen_of_twice_as_many_pixels_draws_the_same(draw, screens) -> None:
+    """All that the picture carries is drawn in units of the interface: only the zoom says that it has more pixels."""
+    coarse, fine = draw(screens), draw(screens, density=2.0)
+    faults = {name: compare(coarse[name].all, fine[name].all, 1.0, slack=ROUNDED) for name in coarse}
+    assert not {name: fault for name, fault in faults.items() if fault}
 
 
 @pytest.mark.parametrize("screens", [show_typical_nodes, show_values, show_panels, show_animation, show_renders])

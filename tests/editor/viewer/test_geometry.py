@@ -14,6 +14,8 @@ from halation.editor.viewer.geometry import (
     wipe_direction,
     wipe_grip,
 )
+from halation.editor.viewer.grips import GRIP_REACH
+from halation.editor.viewer.handles import place_grip
 
 SIGHT = Sight((100.0, 50.0), (800, 600), (400, 200), zoom=3.0, pan=(17.0, -5.0))
 
@@ -29,6 +31,21 @@ def test_screen_and_picture_positions_are_inverse(density: float) -> None:
     sight = Sight((100.0, 50.0), (800, 600), (400, 200), 3.0, (17.0, -5.0), density)
     assert sight.pixel(sight.screen((12.25, 180.5))) == pytest.approx((12.25, 180.5))
     assert sight.place(sight.fraction((333.0, 222.0))) == pytest.approx((333.0, 222.0))
+
+
+@pytest.mark.parametrize("density", [1.0, 2.0])
+def test_a_grip_at_the_edge_of_the_panel_is_moved_in(density: float) -> None:
+    """So that all of it can be hit; one far outside is not seen, and stays where it is."""
+    sight = Sight((100.0, 50.0), (int(800 * density), int(600 * density)), (400, 200), density, density=density)
+    assert sight.screen((0.0, 0.0)) == (300.0, 250.0) and GRIP_REACH < 20.0
+    for at, expected in (
+        ((-200.0, -200.0), (100.0 + 2 * GRIP_REACH, 50.0 + 2 * GRIP_REACH)),
+        ((600.0, 400.0), (900.0 - 2 * GRIP_REACH, 650.0 - 2 * GRIP_REACH)),
+        ((-300.0, 100.0), (0.0, 350.0)),
+        ((700.0, 500.0), (1000.0, 750.0)),
+        ((200.0, 100.0), (500.0, 350.0)),
+    ):
+        assert place_grip(sight, at, 2.0) == expected
 
 
 @pytest.mark.parametrize("factor", [1.2, 0.5, 1000.0, 1e-9])
