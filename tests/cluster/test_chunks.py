@@ -7,6 +7,7 @@ import subprocess
 from collections import Counter
 from collections.abc import Callable
 
+import pytest
 from farms import PYTHON, make_graph
 from halation.cli.cluster_job import prepare_chunk
 from halation.cli.execute import open_job_graph
@@ -138,3 +139,25 @@ def test_what_all_frames_share_is_computed_by_the_first_chunk_alone(shot):
     halves = count_passes(shot, [chunk.take_parts((1, 2)), chunk.take_parts((3, 4))])
     assert alone[1] < alone[0] and len(set(alone[1:])) == 1
     assert sum(alone) == sum(halves) == sum(together)
+
+
+@pytest.mark.parametrize(
+    ("frames", "has_stage"), [((1,), False), ((2,), False), ((1, 2), True), ((2, 3), True), ((0, 1), False)]
+)
+def test_two_frames_with_a_history_share_it(shot, frames: tuple[int, ...], has_stage: bool):
+    """One frame has nobody to share its history with; a history begins with the first frame of the range."""
+    graph = {**make_graph(), "settings": {"size": [64, 48], "frames": [1, 9]}, "inputs": {}}
+    graph["nodes"] = {"noise": {"type": "noise"}, "blur": {"type": "gaussian_blur"}, "echo": {"type": "light_trails"}}
+    graph["links"] = {"blur.image": "noise.out", "echo.image": "blur.out", "outputs.image": "echo.out"}
+    (shot / "shot.json").write_text(json.dumps(graph))
+    destinations = (("", str(shot / "f.####.exr")),)
+    job = RenderJob(
+        sandbox=UNRESTRICTED,
+        graph=str(shot / "shot.json"),
+        frames=frames,
+        destinations=destinations,
+        deterministic=True,
+    )
+    chunk, _ = prepare_chunk(job, open_job_graph(job), ())
+    assert chunk.is_chain != has_stage
+    assert has_stage == (chunk.stage is not None and chunk.stage.frame_before == 1)
