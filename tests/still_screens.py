@@ -13,10 +13,13 @@ from halation.authoring.background.graph_fit import FitOutcome, FitStep, FittedN
 from halation.authoring.commands import (
     AddComment,
     AddFrame,
+    AddNode,
     AnimateValues,
     ExposeValue,
+    LinkCodeFile,
     MakeGroup,
     ReplaceGraph,
+    SetCode,
     SetFrameRange,
     SetValue,
 )
@@ -97,6 +100,23 @@ def show_panels(still: StillEditor) -> Screens:
     still.select("grade", "bloom")
     for title in titles:
         yield f"{title} again", title
+    yield from _show_code(still)
+
+
+def _show_code(still: StillEditor) -> Screens:
+    """Code in the graph, code that is broken, and code in a file, as it is there and as a draft."""
+    session = still.editor.session
+    added = session.apply(AddNode("glsl"))
+    still.select(added)
+    yield "code", "Code"
+    text = session.code_files.find_code(added).text  # pyright: ignore[reportOptionalMemberAccess]
+    session.apply(SetCode(added, text.replace("vec4", "vec5", 1)))
+    yield "broken code", "Code"
+    session.apply(SetCode(added, text))
+    session.apply(LinkCodeFile(added, "still.glsl"))
+    yield "code file", "Code"
+    session.apply(SetCode(added, text + "// more"))
+    yield "draft of a code file", "Code"
 
 
 def show_dialogs(still: StillEditor) -> Screens:
