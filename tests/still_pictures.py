@@ -225,6 +225,33 @@ def _open(still: StillEditor, places: Sequence[tuple[str, str]], shown: str = "i
                 still.show(title, 2)
 
 
+def show_gestures(still: StillEditor) -> Screens:
+    """The canvas while the mouse is held: a band around nodes, lines through links, and links that are pulled."""
+    canvas, io, pane = still.editor.canvas, imgui.get_io(), still.pane
+    pane.size = 3.0 * pane.size[0], pane.size[1]
+    canvas.fit()
+    still.show("Graph", 4)
+    canvas.zoom = 0.5
+    still.show("Graph", 4)
+    near, far = ((pane.at[0] + x * pane.size[0], pane.at[1] + y * pane.size[1]) for x, y in ((0.2, 0.3), (0.8, 0.7)))
+    output, fit, loop = map(still.find_point, ("pin out bloom.glow", "pin in tone_map.image", "pin in grade.image"))
+    for name, tool, start, end in (
+        ("band", "", near, far), ("cut", "cut", near, far), ("dots", "dots", far, near), ("pulled", "", output, far),
+        ("fits", "", output, fit), ("refused", "", output, loop),
+    ):  # fmt: skip
+        canvas.tool = tool
+        pane.point(start)
+        yield f"Graph before {name}", "Graph"
+        io.add_mouse_button_event(0, True)
+        still.show("Graph", 1)
+        pane.point(end)
+        yield f"Graph {name}", "Graph"
+        pane.press(imgui.Key.escape, still.find("Graph").draw)
+        io.add_mouse_button_event(0, False)
+        canvas.tool = ""
+        still.calm("Graph")
+
+
 def show_search(still: StillEditor) -> Screens:
     """The search for nodes in the graph: all, and some."""
     still.show("Graph")

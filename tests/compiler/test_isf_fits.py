@@ -51,6 +51,7 @@ def test_a_formula_and_a_prediction_are_the_same_bilinear_number() -> None:
         (9.0, (0.0, -3.0), "(-3.0 * knob_b)"),
         (1e6, (1.0, 0.0), "1000000.0"),
         (1e4, (1.0, 0.0), "(1.0 * knob_a + 9998.0)"),
+        (1e5, (0.75, 0.0), "(0.75 * knob_a + 99998.5)"),  # at a = 2 it is more than the rounding of 100000
     ],
 )
 def test_a_formula_leaves_out_what_is_rounding(number: float, slopes: tuple[float, float], formula: str) -> None:

@@ -12,7 +12,7 @@ from __future__ import annotations
 import ast
 import re
 from collections import defaultdict
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from functools import cache
 from itertools import accumulate
 from pathlib import Path
@@ -20,6 +20,7 @@ from pathlib import Path
 from changes import TESTS, covers, list_helpers
 from import_graph import MODULES, ROOT, links, name_of, targets
 from mutation.reach import is_outside_functions, list_runners, read_record
+from mutation.shader_users import list_users
 from selection import LIST
 
 FILES = 12
@@ -30,6 +31,9 @@ RUNNING_SECONDS = 60.0
 
 SLOW_FILES = 6
 """The test files whose slow tests see a fault too: those of twelve files take two minutes."""
+
+USING_FILES = 8
+"""The most test files of nodes whose shaders call the function of a fault."""
 
 NEAREST = 2
 """The files of tests that see a fault before all others: most faults are noticed there, and few files are read soon."""
@@ -68,9 +72,11 @@ _COMMAND = re.compile(r'\bcli\(\s*"([\w-]+)"')
 def select_tests(path: Path, line: int) -> list[list[str]]:
     """The arguments of each run of pytest that a fault in this line is shown to, the quickest tests first."""
     if path.parent == FUNCTIONS:
-        names = list_scripted_nodes(path, line)
-        return [[*SCRIPT_TESTS, "-k", " or ".join(sorted({*names, path.stem}))]] if names else [[*SCRIPT_TESTS]]
-    tests = list_tests(path)
+        if not (names := {*list_scripted_nodes(path, line)}):
+            return [[*SCRIPT_TESTS]]
+        names |= {path.stem, *(name for file in SCRIPT_TESTS for name in _list_naming_tests(file, names))}
+        return [[*SCRIPT_TESTS, "-k", " or ".join(sorted(names))]]
+    tests = list_tests(path, line)
     listed = [name for name in LIST.read_text("utf-8").split() if file_of(name) in tests]
     slow = [name for name in listed if file_of(name) in tests[:SLOW_FILES]]
     nearest = dict.fromkeys(tests[:NEAREST])
@@ -113,11 +119,12 @@ def list_fresh_tests(files: list[str]) -> list[str]:
     return [name for file in files for name in _list_names(file) if name not in read_record()[1]]
 
 
-def list_tests(path: Path) -> list[str]:
+def list_tests(path: Path, line: int = 0) -> list[str]:
     """The test files that reach a file, the nearest first: of its own name, of its room, then all others.
 
     Those that `--changed` runs come first, then those whose names are like that of the file or its folder; where both
-    are few, those from which imports lead to the file.
+    are few, those from which imports lead to the file. For a line of a shader the tests of the nodes come before all,
+    whose shaders call its function.
     """
     kin = list_kin(path)
     distances = _measure_distances([name_of(ROOT / file) for file in kin if file.suffix == ".py"])
@@ -129,7 +136,8 @@ def list_tests(path: Path) -> list[str]:
         return not is_twin, not is_named, folder not in path.parts, folder == "nodes", distances.get(test, 0)
 
     tests = [test for test in _list_test_files() if _room_of(test) not in SKIPPED_ROOMS]
-    chosen = sorted((test for test in tests if covers(test, {ROOT / path})), key=measure_distance)
+    chosen = list_tests_of_shaders(list_users(path, line)) if path.suffix != ".py" and line else []
+    chosen += sorted((test for test in tests if covers(test, {ROOT / path})), key=measure_distance)
     others = [test for test in tests if path.suffix == ".py" or _room_of(test) in DRAWING_ROOMS]
     alike = {test: likeness for test in others if (likeness := _count_words(kin, test))}
     chosen += sorted(alike, key=lambda test: (-alike[test], distances.get(test, 99), measure_distance(test)))
@@ -138,6 +146,12 @@ def list_tests(path: Path) -> list[str]:
     far = sorted((test for test in tests if test in distances), key=lambda test: (distances[test], str(test)))
     chosen += far if len(set(chosen)) < SLOW_FILES else []
     return [str(test.relative_to(ROOT)) for test in dict.fromkeys(chosen)][:FILES]
+
+
+def list_tests_of_shaders(stems: list[str]) -> list[Path]:
+    """The tests that are named after shaders; they leave room for others."""
+    named = {test.stem.removeprefix("test_"): test for test in _list_test_files() if _room_of(test) == "nodes"}
+    return [named[stem] for stem in stems if stem in named][:USING_FILES]
 
 
 def list_kin(path: Path) -> set[Path]:
@@ -201,6 +215,16 @@ def _list_names(file: str) -> tuple[str, ...]:
     ]
     found = [(head, each) for head, part in groups for each in part if isinstance(each, ast.FunctionDef)]
     return tuple(f"{head}{each.name}" for head, each in found if each.name.startswith("test_"))
+
+
+def _list_naming_tests(file: str, nodes: Collection[str]) -> Iterator[str]:
+    """The tests of a file whose text names one of these nodes."""
+    source = (ROOT / file).read_text("utf-8")
+    for each in ast.walk(ast.parse(source)):
+        if isinstance(each, ast.FunctionDef) and each.name.startswith("test_"):
+            text = ast.get_source_segment(source, each) or ""
+            if any(f'"{node}"' in text for node in nodes):
+                yield each.name
 
 
 def _room_of(test: Path) -> str:

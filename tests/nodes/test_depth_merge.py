@@ -55,10 +55,13 @@ def test_the_background_is_behind_everything(run, empty):
     assert (both == 1e10).all()
 
 
-def test_silhouettes_stay_where_they_are(run):
+@pytest.mark.parametrize("side", ["right", "left", "below", "above"])
+def test_silhouettes_stay_where_they_are(run, side):
     """Beside an object that is far in front, the surfaces behind it are not mixed, however close they are."""
     a, b = (np.broadcast_to(color, (HEIGHT, WIDTH, 4)).copy() for color in (RED, BLUE))
     a_depth, b_depth = np.full((HEIGHT, WIDTH), 5.001), np.full((HEIGHT, WIDTH), 5.0)
-    a_depth[:, 30:] = 1.0
+    y, x = np.mgrid[:HEIGHT, :WIDTH]
+    is_object = {"right": x >= 30, "left": x < 30, "below": y >= 20, "above": y < 20}[side]
+    a_depth[is_object] = 1.0
     inputs = {"a": a, "a_depth": a_depth, "b": b, "b_depth": b_depth}
-    np.testing.assert_array_equal(run(DepthMerge(), inputs), np.where(np.arange(WIDTH)[:, None] >= 30, a, b))
+    np.testing.assert_array_equal(run(DepthMerge(), inputs), np.where(is_object[..., None], a, b))

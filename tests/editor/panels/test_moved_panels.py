@@ -12,6 +12,7 @@ import pytest
 from drawn_shapes import Shape
 from still_pictures import (
     show_files,
+    show_gestures,
     show_handles,
     show_lessons,
     show_opened_fields,
@@ -43,7 +44,7 @@ have a margin in pixels; and the rows of the start screen are rounded one by one
 
 MOVED = (
     show_typical_nodes, show_values, show_panels, show_animation, show_renders, show_handles, show_viewer, show_files,
-    show_passes, show_lessons, show_search, show_status,
+    show_passes, show_lessons, show_search, show_status, show_gestures,
     show_opened_fields, show_opened_panels,
 )  # fmt: skip
 """What lies in its panel; dialogs lie in the middle of the screen."""

@@ -134,6 +134,18 @@ def test_opposite_actions_cancel(tmp_path: Path, first: str, second: str) -> Non
     assert count > 0
 
 
+def test_keys_that_are_held_repeat_opposites_alike_and_never_a_switch(tmp_path: Path) -> None:
+    """Who goes too far by holding a key goes back by holding another; files and dialogs are asked for once."""
+    with open_state(tmp_path, "a node") as still:
+        actions = {action.id: action for action in still.editor.actions.all}
+    assert {"edit.undo", "edit.redo", "time.next", "viewer.darker", "viewer.smaller_brush"} <= {
+        id for id, action in actions.items() if action.repeats
+    }
+    assert [pair for pair in OPPOSITE if len({actions[id].repeats for id in pair}) > 1] == []
+    once = [id for id, action in actions.items() if action.checked or id.startswith(("file.", "help.", "view."))]
+    assert len(once) > 50 and [id for id in once if actions[id].repeats] == []
+
+
 def test_switches_are_on_where_they_say_so(tmp_path: Path) -> None:
     """One that can be switched off is as before the second time; of others, which exclude each other, one stays on."""
     with open_state(tmp_path, "a node") as still:
