@@ -46,9 +46,11 @@ class DrawnShapes:
         self._add("filled rect", (start, end), (rounding,), color, str(flags))
 
     def add_circle(self, at: Any, radius: float, color: int, segments: int = 0, thickness: float = 1.0) -> None:
+        assert segments == 0 or segments >= 10, "a circle of few segments has corners"
         self._add("circle", (at,), (radius, thickness), color)
 
     def add_circle_filled(self, at: Any, radius: float, color: int, segments: int = 0) -> None:
+        assert segments == 0 or segments >= 10, "a disk of few segments has corners"
         self._add("disk", (at,), (radius,), color)
 
     def add_ngon_filled(self, at: Any, radius: float, color: int, count: int) -> None:

@@ -220,3 +220,26 @@ def load_graph(path: Path, tree: dict[str, Any]) -> Graph:
 
     path.write_text(json.dumps(tree))
     return document.load(path, sandbox=UNRESTRICTED)
+
+
+def measure(ours: np.ndarray, theirs: np.ndarray) -> np.ndarray:
+    """Differences, relative for light above 1."""
+    theirs = np.broadcast_to(theirs, ours.shape)
+    return np.abs(theirs - ours) / np.maximum(1.0, np.abs(ours))
+
+
+def compare_outputs(renderer: Renderer, folder: Path, made: dict, share: float = 0.0) -> None:
+    """All outputs of a graph of one node, within 1e-3 of the renderer.
+
+    But for a share: at the corners of a cube three faces are equally near, and rounding decides.
+    """
+    graph = load_graph(folder / "it.json", made)
+    pictures = render_outputs(graph, renderer, list(graph.nodes["it"].outputs))
+    for name, ours in pictures.items():
+        script = folder / f"{name}.py"
+        export_output(graph, name, script)
+        run_scripts([(script, script.with_suffix(".npy"))], is_fresh=False)
+        errors = measure(ours, np.load(script.with_suffix(".npy")))
+        assert (errors > 1e-3).mean() <= share and errors.max() < 0.02, (
+            f"{name}: {errors.max()}, {(errors > 1e-3).mean()} of all"
+        )

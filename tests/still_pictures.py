@@ -11,7 +11,19 @@ from halation.authoring.preview.pass_pictures import PassPicture
 from halation.editor.tutorials.course import COURSE
 from halation.export.surface_picture import SurfacePicture
 from halation.graph import Expression, Graph, Input, Key, Keys, Output, Port
-from halation.nodes import Kind, Node, RotoShape, Value, catalogue, join_points, name_roto_shapes, split_points
+from halation.nodes import (
+    Kind,
+    Light,
+    LightKind,
+    Node,
+    RotoShape,
+    Value,
+    catalogue,
+    join_points,
+    name_roto_shapes,
+    number_lights,
+    split_points,
+)
 from halation.nodes.input.read_image import ReadImage
 from imgui_bundle import imgui
 from still_editor import StillEditor, name_kind
@@ -75,6 +87,30 @@ def show_handles(still: StillEditor) -> Screens:
         still.show("Viewer", 2)
         still.compute()
         yield f"keyed point at {frame}", "Viewer"
+
+
+def show_lamps(still: StillEditor) -> Screens:
+    """Lights of each kind that a camera sees, each of them selected once, and the dome of suns."""
+    session, lights = still.editor.session, Port("node", "lights")
+    kinds = (*LightKind, LightKind.SPOT, LightKind.SUN)
+    lamps = [
+        Light(kind, (0.3 * number - 1.2, 0.0, 1.0), (0.3, 0.4, -1.0), intensity=(-1.0 if number == 2 else 1.0))
+        for number, kind in enumerate(kinds)
+    ]
+    graph = make_graph("deferred_lighting").add("camera", catalogue()["camera"]())
+    graph = graph.connect(Port("camera", "camera"), Port("node", "camera")).set(lights, number_lights(lamps))
+    session.apply(ReplaceGraph("Start", graph))
+    still.select("node")
+    session.views.show(Port("node", "out"))
+    still.show("Viewer", 2)
+    still.compute()
+    for name in ("", *number_lights(lamps)):
+        still.editor.items[str(lights)] = name
+        yield f"lamp {name}", "Viewer"
+    for place in sorted(still.places):
+        if place.startswith(("goal", "handle")):
+            still.pane.point(still.find_point(place))
+            yield f"over {place}", "Viewer"
 
 
 def show_viewer(still: StillEditor) -> Screens:

@@ -25,6 +25,7 @@ from still_pictures import (
     show_files,
     show_gestures,
     show_handles,
+    show_lamps,
     show_lessons,
     show_opened_fields,
     show_opened_panels,
@@ -65,7 +66,7 @@ RENEW = bool(os.environ.get("HALATION_RENEW"))
 SCREENS: tuple[Callable[[StillEditor], Screens], ...] = (
     show_typical_nodes, show_values, show_panels, show_animation, show_renders, show_handles, show_viewer, show_files,
     show_passes, show_lessons, show_search, show_status, show_opened_fields, show_opened_panels, show_dialogs,
-    show_more_dialogs, show_gestures,
+    show_more_dialogs, show_gestures, show_lamps,
 )  # fmt: skip
 
 Place = tuple[str, int, int, list[int]]
