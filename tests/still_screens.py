@@ -28,6 +28,7 @@ from halation.editor.shared.dialogs import Browse, Purpose, Question
 from halation.editor.shared.window_commands import PanelTitle
 from halation.graph import Expression, Graph, Key, Keys, Port
 from halation.nodes import Light, LightKind, Node, Value, catalogue, number_lights
+from imgui_bundle import imgui
 from still_editor import StillEditor
 from toy_nodes import Lamps, Tint
 
@@ -125,6 +126,9 @@ def show_dialogs(still: StillEditor) -> Screens:
     for name, title in (("shortcuts", "Shortcuts"), ("preferences", "Preferences"), ("palette", "Command palette")):
         dialogs.open.add(name)
         yield name, title
+        if name == "palette":
+            imgui.get_io().add_input_characters_utf8("node")
+            yield "palette with letters", title
         dialogs.open.clear()
     answers = (("Save", lambda: None), ("Do not save", lambda: None), ("Cancel", lambda: None))
     dialogs.question = Question("Save the changes?", "'many_things' was changed.", answers)

@@ -30,7 +30,7 @@ WIDGETS = (
 
 
 CHOSEN, DISABLED = 0xFF, 0xFF00
-"""The colors by which a widget says that it is checked or selected, and that it is disabled."""
+"""The colors by which a widget that has none says that it is checked or selected, and that it is disabled."""
 
 STACKS = {
     "push_font": "pop_font", "push_style_color": "pop_style_color", "push_style_var": "pop_style_var",
@@ -249,6 +249,8 @@ class StillWindow:
             label = next((word for word in words if isinstance(word, str)), "")
             states = [word for word in words if isinstance(word, bool)]  # whether it is on, and whether it can be used
             color = CHOSEN * states[:1].count(True) | DISABLED * states[1:2].count(False)
+            if name == "text_colored":
+                color = imgui.color_convert_float4_to_u32(imgui.ImVec4(*words[0]))
             self.widgets.append(Shape(name, ((low.x, low.y), (high.x, high.y)), (), color, label))
             self._widget_clips.append(find_clip())
             return answer

@@ -41,9 +41,9 @@ PIXELS = re.compile(r"[\d.]+ %|\d+, \d+")
 CLICKED = "button", "small_button", "checkbox", "radio_button", "invisible_button", "selectable", "drag_float"
 """Widgets that take clicks."""
 
-UNEVEN = ("Graph", "Animation ", "sheet ", "curves ", "start")
+UNEVEN = ("Graph", "Animation ", "sheet ", "curves ", "start", "palette with letters")
 """How screens begin that do not grow evenly: a grid has as many lines as pixels allow, a curve as many points; keys
-have a margin in pixels; and the rows of the start screen are rounded one by one."""
+have a margin in pixels; and the rows of the start screen and the letters of a command are rounded one by one."""
 
 
 MOVED = (
