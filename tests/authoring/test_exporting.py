@@ -128,7 +128,8 @@ def test_one_that_does_not_listen_is_killed_and_its_part_removed(exports, folder
     code = (
         "import os, signal, sys, time; from pathlib import Path; from halation.resources.atomic_write import "
         "temporary_prefix;"
-        "signal.signal(signal.SIGINT, signal.SIG_IGN); Path(temporary_prefix(os.getpid()) + 'x.exr').touch();"
+        "[signal.signal(each, signal.SIG_IGN) for each in (signal.SIGINT, signal.SIGTERM)];"
+        "Path(temporary_prefix(os.getpid()) + 'x.exr').touch();"
         "print('ready', file=sys.stderr, flush=True); time.sleep(60)"
     )
     script = tmp_path / "stuck"

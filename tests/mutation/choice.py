@@ -87,8 +87,10 @@ def select_tests(path: Path, line: int) -> list[list[str]]:
         tests, driving = ([test for test in some if test not in recorded] for some in (tests, driving))
     is_outside = path.suffix == ".py" and is_outside_functions(path, line)  # what a constant changes, was not recorded
     first = [test for test in (nearest if is_outside else tests) if test in nearest]
-    seen = dict.fromkeys(name for name in (*runners, *slow) if file_of(name) in nearest.keys() - {*first})
-    first, late = [*first, *(name for name in seen if name not in listed)], [name for name in seen if name in listed]
+    seen = dict.fromkeys(name for name in (*runners, *slow) if file_of(name) in nearest)
+    late = [name for name in seen if name in listed]
+    first += [name for name in seen if name not in listed and file_of(name) not in first]
+    first += [f"--deselect={name}" for name in listed if file_of(name) in first]
     tests = [test for test in tests if test not in nearest]
     near = [*dict.fromkeys(file_of(name) for name in runners)][:SLOW_FILES]
     runners, slow = ([name for name in some if file_of(name) not in nearest] for some in (runners, slow))
@@ -133,7 +135,8 @@ def list_tests(path: Path, line: int = 0) -> list[str]:
         name, folder = test.stem.removeprefix("test_"), test.parent.name
         is_twin = name.rstrip("s") == path.stem.rstrip("s")
         is_named = path.stem in test.read_text("utf-8")
-        return not is_twin, not is_named, folder not in path.parts, folder == "nodes", distances.get(test, 0)
+        taken = _count_imports(test, path.stem) if path.suffix == ".py" else 0  # more of a module: a closer look at it
+        return not is_twin, -taken, not is_named, folder not in path.parts, folder == "nodes", distances.get(test, 0)
 
     tests = [test for test in _list_test_files() if _room_of(test) not in SKIPPED_ROOMS]
     chosen = list_tests_of_shaders(list_users(path, line)) if path.suffix != ".py" and line else []
@@ -237,6 +240,13 @@ def _count_words(files: Collection[Path], test: Path) -> int:
     words = {word[:4] for part in parts for word in part.split("_") if len(word) > 2}
     names = (_room_of(test).replace("cli", ""), test.stem.removeprefix("test_"))  # each command has its own file
     return len(words & {word[:4] for name in names for word in name.split("_")})
+
+
+@cache
+def _count_imports(test: Path, module: str) -> int:
+    """How many names a test file imports from modules of a name."""
+    imports = [each for each in ast.walk(ast.parse(test.read_text("utf-8"))) if isinstance(each, ast.ImportFrom)]
+    return sum(len(each.names) for each in imports if (each.module or "").endswith(f".{module}"))
 
 
 @cache

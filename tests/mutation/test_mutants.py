@@ -14,7 +14,9 @@ from mutation.choice import FUNCTIONS, list_scripted_nodes, list_tests, select_t
 from mutation.mutants import list_mutants
 from mutation.repairs import REPAIRS
 from mutation.run import draw_mutants, list_files, raise_floors
+from mutation.shader_users import list_users
 from mutation.trials import room_of
+from selection import LIST
 
 PYTHON = '''"""Text with 1 + 1."""
 __all__ = ["size"]
@@ -97,6 +99,7 @@ def test_the_same_seed_draws_the_same_faults() -> None:
 
 def test_the_nearest_tests_come_first() -> None:
     assert list_tests(Path("app/graph/walk.py"))[0] == "tests/graph/test_walk.py"
+    assert list_tests(Path("app/media/comparison/contact_sheet.py"))[0] == "tests/presets/test_sheet.py"
     assert list_tests(Path("shaders/geometry/curvature.glsl"))[0] == "tests/nodes/test_curvature.py"
 
 
@@ -113,6 +116,24 @@ def test_the_nearest_tests_come_first() -> None:
 )
 def test_a_file_that_no_test_imports_has_tests_too(path: str, test: str) -> None:
     assert test in [word for words in select_tests(Path(path), 1) for word in words]
+
+
+def test_a_shader_is_tried_by_the_nodes_that_call_its_function() -> None:
+    text = (ROOT / "shaders/lib/color.glsl").read_text("utf-8")
+    line = text.count("\n", 0, text.index("float srgb_decode(")) + 3
+    assert list_users(Path("shaders/lib/color.glsl"), line)[:4] == ["color", "color_balance", "curves", "dither"]
+    assert "oil" not in list_users(Path("shaders/color/levels.glsl"), 10) == ["levels"]
+    chosen = select_tests(Path("shaders/lib/color.glsl"), line)[0]
+    assert chosen[:2] == ["tests/nodes/test_color.py", "tests/nodes/test_curves.py"]
+
+
+def test_slow_tests_come_late() -> None:
+    listed = LIST.read_text("utf-8").split()
+    for path in ("app/media/comparison/contact_sheet.py", "app/graph/walk.py", "shaders/lib/occlusion.glsl"):
+        words = select_tests(Path(path), 20)[0]
+        files = {word for word in words if word.endswith(".py")}
+        assert {f"--deselect={name}" for name in listed if name.partition("::")[0] in files} <= {*words}
+        assert not {*words} & {*listed}
 
 
 def test_a_function_of_scripts_is_tried_by_the_nodes_that_need_it() -> None:
