@@ -113,6 +113,18 @@ def test_controls_become_inputs(renderer: Renderer) -> None:
         assert close(both(renderer, changed, found.text, (64, 48), **values), 1e-3)
 
 
+def test_the_default_of_a_place_is_counted_from_below_and_that_of_a_color_is_a_code(renderer: Renderer) -> None:
+    """As ISF has them: y goes up, and the colors of a picker are codes of a screen."""
+    graph = chain(made("swirl", center=(0.3, 0.2), radius=0.4), made("grade", gain=(0.214041, 0.0, 1.0, 1.0)))
+    graph = graph.add_control("middle", Control(Port("n0", "center"))).add_control("dark", Control(Port("n1", "gain")))
+    found = exported(graph)
+    head = json.loads(found.text[2 : found.text.index("*/")])
+    defaults = {one["NAME"]: one.get("DEFAULT") for one in head["INPUTS"]}
+    assert defaults["middle"] == pytest.approx([0.3, 0.8])
+    assert defaults["dark"] == pytest.approx([0.5, 0.0, 1.0, 1.0], abs=1e-5)
+    assert close(both(renderer, graph, found.text, (64, 48)), 1e-3)
+
+
 @pytest.mark.parametrize("name", ["width", "height", "frame", "canvas"])
 def test_a_control_may_have_the_name_of_what_the_shader_follows_anyway(renderer: Renderer, name: str) -> None:
     """The size of the picture and the frame are numbers that a shader follows: they must not be taken for controls."""

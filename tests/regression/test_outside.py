@@ -175,3 +175,14 @@ def test_the_plugin_loads_nothing_where_there_is_no_suite(tmp_path: Path) -> Non
     )
     result = pytest_in(tmp_path, "-p", "no:cacheprovider")
     assert result.returncode == 0, result.stdout
+
+
+@pytest.mark.parametrize("frames", ["", 'frames = "3"'])
+def test_a_case_without_goldens_renders_its_first_frame(cli, suite, graph, frames: str) -> None:
+    graph()
+    suite(f'[cases.look]\ngraph = "graph.json"\n{frames}')
+    ended = cli()
+    assert ended.code == 0 and "pass  looks.suite.toml::look" in ended.out and "1 passed" in ended.err
+    suite(f'[cases.look]\ngraph = "graph.json"\nerror = "no such file"\n{frames}')
+    ended = cli()
+    assert ended.code == 1 and "it should fail with 'no such file', but it renders" in ended.out

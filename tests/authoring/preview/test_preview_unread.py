@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from halation.authoring.preview.read_nodes import list_read_nodes, shows_same_pictures
-from halation.graph import Control, Expression, Graph, Group, Keys, Output, Port, Settings
+from halation.graph import Control, Expression, Graph, Group, Input, Keys, Output, Port, Settings
 from halation.nodes import Kind
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.input.noise import Noise
@@ -113,3 +113,22 @@ def test_the_first_picture_of_a_graph_without_a_size_is_read() -> None:
     assert not shows_same_pictures(graph, edited, PORTS.values())
     with_size = replace(graph, settings=Settings((8, 8)))
     assert shows_same_pictures(with_size, replace(edited, settings=Settings((8, 8))), PORTS.values())
+
+
+@pytest.mark.parametrize("reads_by", ["a node", "an input"])
+def test_a_picture_within_a_group_may_decide_the_size(reads_by: str) -> None:
+    """Beside nodes and inputs that read no file."""
+    from halation.nodes import catalogue
+
+    read = catalogue()["read_image"]
+
+    def make(path: str) -> Graph:
+        inner = Graph().add("light", Exposure()).add_input("plain", Input(Kind.IMAGE))
+        if reads_by == "a node":
+            inner = inner.add("file", read(path=path))
+        else:
+            inner = inner.add_input("read", Input(Kind.IMAGE, file=path))
+        return replace(make_graph(), settings=Settings()).add("group", Group(inner))
+
+    assert not shows_same_pictures(make("a.exr"), make("b.exr"), PORTS.values())
+    assert shows_same_pictures(make("a.exr"), make("a.exr"), PORTS.values())
