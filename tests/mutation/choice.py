@@ -221,13 +221,13 @@ def _list_names(file: str) -> tuple[str, ...]:
 
 
 def _list_naming_tests(file: str, nodes: Collection[str]) -> Iterator[str]:
-    """The tests of a file whose text names one of these nodes."""
+    """The tests of a file whose text names one of these nodes, or a function of the file that does."""
     source = (ROOT / file).read_text("utf-8")
-    for each in ast.walk(ast.parse(source)):
-        if isinstance(each, ast.FunctionDef) and each.name.startswith("test_"):
-            text = ast.get_source_segment(source, each) or ""
-            if any(f'"{node}"' in text for node in nodes):
-                yield each.name
+    functions = [each for each in ast.walk(ast.parse(source)) if isinstance(each, ast.FunctionDef)]
+    texts = {each.name: ast.get_source_segment(source, each) or "" for each in functions}
+    words = [f'"{node}"' for node in nodes]
+    words += [f"{name}(" for name, text in texts.items() if any(word in text for word in words)]
+    yield from (name for name, text in texts.items() if name.startswith("test_") and any(map(text.__contains__, words)))
 
 
 def _room_of(test: Path) -> str:

@@ -141,6 +141,8 @@ def test_a_function_of_scripts_is_tried_by_the_nodes_that_need_it() -> None:
     lines = (ROOT / path).read_text("utf-8").splitlines()
     assert list_scripted_nodes(path, 1) == []
     assert list_scripted_nodes(path, lines.index("SEARCH_LENGTHS = " + lines[11].partition(" = ")[2]) + 1) == ["smaa"]
+    (words,) = select_tests(FUNCTIONS / "coverage.py", 54)
+    assert "test_a_render_is_lit_as_by_the_node" in words[-1], "it makes its node by a function of its file"
 
 
 def test_floors_rise_where_enough_was_tried_and_never_fall() -> None:
