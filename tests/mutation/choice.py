@@ -77,7 +77,7 @@ def select_tests(path: Path, line: int) -> list[list[str]]:
         names |= {path.stem, *(name for file in SCRIPT_TESTS for name in _list_naming_tests(file, names))}
         return [[*SCRIPT_TESTS, "-k", " or ".join(sorted(names))]]
     tests = list_tests(path, line)
-    listed = [name for name in LIST.read_text("utf-8").split() if file_of(name) in tests]
+    listed = LIST.read_text("utf-8").split()
     slow = [name for name in listed if file_of(name) in tests[:SLOW_FILES]]
     nearest = dict.fromkeys(tests[:NEAREST])
     driving = list_driving_tests(path)
@@ -85,6 +85,8 @@ def select_tests(path: Path, line: int) -> list[list[str]]:
         recorded = {file_of(name) for name in read_record()[1]}
         runners += list_fresh_tests([test for test in tests if test in recorded])
         tests, driving = ([test for test in some if test not in recorded] for some in (tests, driving))
+    near = [*dict.fromkeys(file_of(name) for name in runners)][:SLOW_FILES]  # their slow tests are not in the record
+    slow += [name for name in listed if file_of(name) in near and name not in slow]
     is_outside = path.suffix == ".py" and is_outside_functions(path, line)  # what a constant changes, was not recorded
     first = [test for test in (nearest if is_outside else tests) if test in nearest]
     seen = dict.fromkeys(name for name in (*runners, *slow) if file_of(name) in nearest)
@@ -92,7 +94,6 @@ def select_tests(path: Path, line: int) -> list[list[str]]:
     first += [name for name in seen if name not in listed and file_of(name) not in first]
     first += [f"--deselect={name}" for name in listed if file_of(name) in first]
     tests = [test for test in tests if test not in nearest]
-    near = [*dict.fromkeys(file_of(name) for name in runners)][:SLOW_FILES]
     runners, slow = ([name for name in some if file_of(name) not in nearest] for some in (runners, slow))
     kin, far = ([name for name in runners if (file_of(name) in near) is wanted] for wanted in (True, False))
     quick = [*tests, *(f"--deselect={name}" for name in listed if file_of(name) in tests)] if tests else []

@@ -139,6 +139,13 @@ def test_an_extent_is_that_of_the_vertices_within_the_clips() -> None:
     assert not surround(find_extent(points[:0], commands[:0]))
 
 
+@pytest.mark.parametrize("box", [(5.0, 5.0, 5.0, 9.0), (5.0, 9.0, 8.0, 9.0), (9.0, 5.0, 5.0, 9.0)])
+def test_what_has_no_width_or_no_height_draws_nothing(box: tuple[float, ...]) -> None:
+    drawn = (1.2, 2.0, 3.0, 4.5)
+    assert surround(np.array([box], np.float32)) == []
+    assert surround(np.array([box, drawn], np.float32)) == [(1, 2, 3, 5)]
+
+
 def test_equal_lists_have_no_box() -> None:
     random = np.random.default_rng(0)
     rects = [choose(random) for _ in range(40)]
