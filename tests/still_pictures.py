@@ -6,7 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+from gui_renders import make_render
 from halation.authoring.commands import AnimateValues, MovePoints, ReplaceGraph, SetFrameRange
+from halation.authoring.flipbook import FlipbookStrip
 from halation.authoring.preview.pass_pictures import PassPicture
 from halation.editor.tutorials.course import COURSE
 from halation.export.surface_picture import SurfacePicture
@@ -26,6 +28,7 @@ from halation.nodes import (
 )
 from halation.nodes.input.read_image import ReadImage
 from imgui_bundle import imgui
+from msgspec.structs import replace
 from still_editor import StillEditor, name_kind
 from still_screens import Screens, describe_kind
 
@@ -286,6 +289,37 @@ def show_gestures(still: StillEditor) -> Screens:
         io.add_mouse_button_event(0, False)
         canvas.tool = ""
         still.calm("Graph")
+
+
+def show_wide_panels(still: StillEditor) -> Screens:
+    """Panels with room for all of their tools."""
+    session, pane = still.editor.session, still.pane
+    pane.size = 3.0 * pane.size[0], pane.size[1]
+    session.apply(SetFrameRange(1, 48))
+    session.apply(AnimateValues({Port("bloom", "intensity"): Keys((Key(1, 0.2), Key(12, 0.9)))}, "Animate"))
+    session.views.show(Port("outputs", "image"))
+    still.select("bloom")
+    still.show("Viewer", 2)
+    still.compute()
+    for title in ("Animation", "Inspector", "Viewer", "Timeline", "Scopes", "Log", "Problems", "Renders", "Passes"):
+        yield f"wide {title}", title
+
+
+def show_flipbooks(still: StillEditor) -> Screens:
+    """Pictures that were rendered, played in the viewer: one strip, two, and two of one name, of which one is new."""
+    folder, pane = Path(still.editor.session.graph.folder), still.pane
+    pane.size = 3.0 * pane.size[0], pane.size[1]
+    render = make_render(folder / "f.png", "running", 2, 5)
+    strips = [FlipbookStrip(folder / "samples" / f"{name}.exr", (1, 1)) for name in ("studio", "neon", "neon")]
+    for name, chosen in (
+        ("one", strips[:1]), ("two", strips[:2]), ("alike", [strips[1], replace(strips[2], export=render)]),
+    ):  # fmt: skip
+        still.contexts.flipbooks.open(*chosen)
+        still.show("Viewer", 2)
+        still.compute()
+        for title in ("Viewer", "Timeline"):
+            yield f"flipbook {name} {title}", title
+        still.contexts.flipbooks.close()
 
 
 def show_search(still: StillEditor) -> Screens:

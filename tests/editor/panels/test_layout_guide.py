@@ -23,6 +23,7 @@ from drawn_shapes import Shape
 from still_editor import StillEditor
 from still_pictures import (
     show_files,
+    show_flipbooks,
     show_gestures,
     show_handles,
     show_lamps,
@@ -33,6 +34,7 @@ from still_pictures import (
     show_search,
     show_status,
     show_viewer,
+    show_wide_panels,
 )
 from still_screens import (
     Screens,
@@ -66,7 +68,7 @@ RENEW = bool(os.environ.get("HALATION_RENEW"))
 SCREENS: tuple[Callable[[StillEditor], Screens], ...] = (
     show_typical_nodes, show_values, show_panels, show_animation, show_renders, show_handles, show_viewer, show_files,
     show_passes, show_lessons, show_search, show_status, show_opened_fields, show_opened_panels, show_dialogs,
-    show_more_dialogs, show_gestures, show_lamps,
+    show_more_dialogs, show_gestures, show_lamps, show_flipbooks, show_wide_panels,
 )  # fmt: skip
 
 Place = tuple[str, int, int, list[int]]

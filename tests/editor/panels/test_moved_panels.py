@@ -12,6 +12,7 @@ import pytest
 from drawn_shapes import Shape
 from still_pictures import (
     show_files,
+    show_flipbooks,
     show_gestures,
     show_handles,
     show_lamps,
@@ -22,6 +23,7 @@ from still_pictures import (
     show_search,
     show_status,
     show_viewer,
+    show_wide_panels,
 )
 from still_screens import (
     show_animation,
@@ -41,14 +43,14 @@ PIXELS = re.compile(r"[\d.]+ %|\d+, \d+")
 CLICKED = "button", "small_button", "checkbox", "radio_button", "invisible_button", "selectable", "drag_float"
 """Widgets that take clicks."""
 
-UNEVEN = ("Graph", "Animation ", "sheet ", "curves ", "start", "palette with letters")
+UNEVEN = ("Graph", "Animation ", "sheet ", "curves ", "start", "palette with letters", "flipbook ", "wide Animation")
 """How screens begin that do not grow evenly: a grid has as many lines as pixels allow, a curve as many points; keys
 have a margin in pixels; and the rows of the start screen and the letters of a command are rounded one by one."""
 
 
 MOVED = (
     show_typical_nodes, show_values, show_panels, show_animation, show_renders, show_handles, show_viewer, show_files,
-    show_passes, show_lessons, show_search, show_status, show_gestures, show_lamps,
+    show_passes, show_lessons, show_search, show_status, show_gestures, show_lamps, show_flipbooks, show_wide_panels,
     show_opened_fields, show_opened_panels,
 )  # fmt: skip
 """What lies in its panel; dialogs lie in the middle of the screen."""
