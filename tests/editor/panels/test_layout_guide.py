@@ -46,7 +46,7 @@ from still_screens import (
     show_typical_nodes,
     show_values,
 )
-from still_window import Drawing
+from still_window import WIDGETS, Drawing
 
 GUIDE = Path(__file__).parents[2] / "data/layout_guide.npz"
 """The screens, and of each the kinds of its shapes, their colors, what they say, and points and lengths in tenths."""
@@ -79,7 +79,8 @@ def measure(shape: Shape) -> Place:
     """Where a shape is, and what it is like."""
     numbers = np.array([*(part for point in shape.points for part in point), *shape.lengths])
     rounded = np.round(np.clip(numbers, -3e3, 3e3) * TENTHS).astype(int).tolist()
-    return shape.kind, shape.color, sum_words(shape.text), rounded
+    is_said = shape.kind == "text" or shape.kind in WIDGETS
+    return shape.kind, shape.color, sum_words(shape.text) if is_said else zlib.crc32(shape.text.encode()), rounded
 
 
 def sum_words(text: str) -> int:
