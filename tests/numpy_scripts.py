@@ -234,7 +234,9 @@ def compare_outputs(renderer: Renderer, folder: Path, made: dict, share: float =
     But for a share: at the corners of a cube three faces are equally near, and rounding decides.
     """
     graph = load_graph(folder / "it.json", made)
-    pictures = render_outputs(graph, renderer, list(graph.nodes["it"].outputs))
+    item = graph.nodes["it"]
+    assert isinstance(item, Node)
+    pictures = render_outputs(graph, renderer, list(item.outputs))
     for name, ours in pictures.items():
         script = folder / f"{name}.py"
         export_output(graph, name, script)

@@ -6,10 +6,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+from drawn_shapes import Point
 from gui_renders import make_render
 from halation.authoring.commands import AnimateValues, MovePoints, ReplaceGraph, SetFrameRange
 from halation.authoring.flipbook import FlipbookStrip
 from halation.authoring.preview.pass_pictures import PassPicture
+from halation.editor.canvas.view import Tool
 from halation.editor.tutorials.course import COURSE
 from halation.export.surface_picture import SurfacePicture
 from halation.graph import Expression, Graph, Input, Key, Keys, Output, Port
@@ -107,11 +109,12 @@ def show_lamps(still: StillEditor) -> Screens:
     session.views.show(Port("node", "out"))
     still.show("Viewer", 2)
     still.compute()
-    for name in ("", *number_lights(lamps)):
+    names = ["", *number_lights(lamps)]
+    for name in names:
         still.editor.items[str(lights)] = name
         yield f"lamp {name}", "Viewer"
-    for place in sorted(still.places):
-        if place.startswith(("goal", "handle")):
+        starts = ("goal", "handle", "size") if name == names[-1] else ("size",)
+        for place in [place for place in sorted(still.places) if place.startswith(starts)]:
             still.pane.point(still.find_point(place))
             yield f"over {place}", "Viewer"
 
@@ -274,10 +277,11 @@ def show_gestures(still: StillEditor) -> Screens:
     still.show("Graph", 4)
     near, far = ((pane.at[0] + x * pane.size[0], pane.at[1] + y * pane.size[1]) for x, y in ((0.2, 0.3), (0.8, 0.7)))
     output, fit, loop = map(still.find_point, ("pin out bloom.glow", "pin in tone_map.image", "pin in grade.image"))
-    for name, tool, start, end in (
-        ("band", "", near, far), ("cut", "cut", near, far), ("dots", "dots", far, near), ("pulled", "", output, far),
+    steps: tuple[tuple[str, Tool, Point, Point], ...] = (
+        ("band", "", near, far), ("cut", "cut", near, far), ("dots", "dot", far, near), ("pulled", "", output, far),
         ("fits", "", output, fit), ("refused", "", output, loop),
-    ):  # fmt: skip
+    )  # fmt: skip
+    for name, tool, start, end in steps:
         canvas.tool = tool
         pane.point(start)
         yield f"Graph before {name}", "Graph"
