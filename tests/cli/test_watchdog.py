@@ -291,3 +291,21 @@ def test_commands_that_render_once_are_watched_too(tmp_path: Path, command: str)
     sentence = ended.stderr.splitlines()[-1]
     assert sentence.startswith("halation: node 'user': its code has not ended after 1 seconds")
     assert {file.name for file in tmp_path.iterdir()} == {"graph.json"}
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="fork and SIGKILL")
+def test_the_limited_copy_of_a_command_ends_with_it(tmp_path: Path) -> None:
+    """Whoever kills the command at once, with a signal that it cannot hear, leaves nothing behind."""
+    code = (
+        "import os, time; from halation.cli.watchdog import run_limited\n"
+        "run_limited(lambda: print(os.getppid(), os.getpid(), flush=True) or time.sleep(120) or 0)"
+    )
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        parent, copy = map(int, process.stdout.readline().split())
+        assert parent == process.pid != copy
+        process.kill()
+    end = time.monotonic() + 60.0
+    while (state := Path(f"/proc/{copy}/stat")).exists() and state.read_text().rpartition(")")[2].split()[0] != "Z":
+        assert time.monotonic() < end, "the copy goes on"
+        time.sleep(0.02)

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from halation.errors import ShaderError
 from halation.graph import Graph, Output, Port, Settings
-from halation.nodes import Kind, Source, catalogue
+from halation.nodes import Kind, Node, Source, catalogue
 from halation.presets import sample
 from halation.reference.examples import EXAMPLES
 from halation.reference.node_page import describe_example, describe_time, find_main_value, list_steps, make_example
@@ -27,6 +27,15 @@ LAYERS = {"depth": "Depth", "ids": "Object Index", "position": "Position", "norm
 
 def find_source(graph: Graph, socket: str) -> Port | None:
     return graph.links.get(Port(NODE, socket))
+
+
+@pytest.mark.parametrize("id", NODES)
+def test_no_color_that_it_gets_covers_more_than_all(id: str) -> None:
+    graph = show_on_sample(NODES[id], SAMPLE)
+    for name, item in graph.nodes.items():
+        for value in item.values.values() if name != NODE and isinstance(item, Node) else ():
+            if value.type == "color":
+                assert 0.0 <= graph.value(Port(name, value.name))[3] <= 1.0, f"{name}.{value.name}"
 
 
 @pytest.mark.parametrize("id", NODES)

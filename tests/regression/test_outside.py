@@ -186,3 +186,13 @@ def test_a_case_without_goldens_renders_its_first_frame(cli, suite, graph, frame
     suite(f'[cases.look]\ngraph = "graph.json"\nerror = "no such file"\n{frames}')
     ended = cli()
     assert ended.code == 1 and "it should fail with 'no such file', but it renders" in ended.out
+
+
+def test_the_first_frame_of_a_case_without_goldens_is_that_of_its_graph(cli, suite, graph, tmp_path: Path) -> None:
+    """The only one that is there."""
+    text = graph().read_text().replace("shot.exr", "shot.####.exr")
+    (tmp_path / "graph.json").write_text(json.dumps({**json.loads(text), "settings": {"frames": [3, 9]}}))
+    (tmp_path / "shot.exr").rename(tmp_path / "shot.0003.exr")
+    suite('[cases.look]\ngraph = "graph.json"')
+    ended = cli()
+    assert ended.code == 0 and "1 passed" in ended.err, ended
