@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from drawn_shapes import Point
 from gui_renders import make_render
-from halation.authoring.commands import AnimateValues, MovePoints, ReplaceGraph, SetFrameRange
+from halation.authoring.commands import AddNode, AnimateValues, MovePoints, ReplaceGraph, SetFrameRange
 from halation.authoring.flipbook import FlipbookStrip
 from halation.authoring.preview.pass_pictures import PassPicture
 from halation.editor.canvas.view import Tool
@@ -307,6 +307,10 @@ def show_wide_panels(still: StillEditor) -> Screens:
     still.compute()
     for title in ("Animation", "Inspector", "Viewer", "Timeline", "Scopes", "Log", "Problems", "Renders", "Passes"):
         yield f"wide {title}", title
+    still.select(session.apply(AddNode("glsl")))
+    still.show("Code")
+    still.click("Code", "button code help")
+    yield "help for code", "Code"
 
 
 def show_flipbooks(still: StillEditor) -> Screens:

@@ -24,6 +24,7 @@ from halation.authoring.commands import (
     SetValue,
 )
 from halation.authoring.edits.element_id import ElementId
+from halation.authoring.recovery.recovery import RecoveredWork
 from halation.editor.shared.dialogs import Browse, Purpose, Question
 from halation.editor.shared.window_commands import PanelTitle
 from halation.graph import Expression, Graph, Key, Keys, Port
@@ -188,6 +189,12 @@ def show_more_dialogs(still: StillEditor) -> Screens:
         still.editor.store.note_opened(path)
     dialogs.open.add("start")
     yield "start", "Start"
+    start: Any = still.find("Start")
+    start._recovered = tuple(
+        RecoveredWork(Path("left.json"), path, time=1e9, nodes=nodes, fault=fault)
+        for nodes, fault, path in ((1, "", None), (17, "", Path("/pictures/one.json")), (0, "it is damaged", None))
+    )
+    yield "start with work that was lost", "Start"
     dialogs.open.clear()
     for purpose, saving in PURPOSES:
         still.editor.store.note_folder(purpose, (SAMPLES if purpose == "image" else SAMPLES.parent) / "x")
