@@ -45,7 +45,8 @@ CLICKED = "button", "small_button", "checkbox", "radio_button", "invisible_butto
 
 UNEVEN = ("Graph", "Animation ", "sheet ", "curves ", "start", "palette with letters", "flipbook ", "wide Animation")
 """How screens begin that do not grow evenly: a grid has as many lines as pixels allow, a curve as many points; keys
-have a margin in pixels; and the rows of the start screen and the letters of a command are rounded one by one."""
+have a margin in pixels; and the rows of the start screen, the letters of a command and the names of what is played are
+rounded one by one."""
 
 
 MOVED = (
